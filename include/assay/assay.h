@@ -1,0 +1,15 @@
+/* assay.h - everything. */
+#ifndef ASSAY_ASSAY_H
+#define ASSAY_ASSAY_H
+
+#include "assay/array.h"
+#include "assay/compare.h"
+#include "assay/context.h"
+#include "assay/image.h"
+#include "assay/params.h"
+#include "assay/render.h"
+#include "assay/scene.h"
+#include "assay/status.h"
+#include "assay/types.h"
+
+#endif

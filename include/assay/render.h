@@ -1,0 +1,84 @@
+/* render.h - methods, and images and probes made with them. */
+#ifndef ASSAY_RENDER_H
+#define ASSAY_RENDER_H
+
+#include <stdint.h>
+
+#include "assay/array.h"
+#include "assay/context.h"
+#include "assay/image.h"
+#include "assay/params.h"
+#include "assay/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- methods ---- */
+
+typedef struct {
+    const char             *name;    /* "path"                     */
+    const char             *summary; /* one sentence               */
+    const assay_param_desc *params;  /* ends with a NULL name      */
+} assay_method_info;
+
+/* Count of methods, and the i-th in the order of the registry. */
+ASSAY_API int               assay_method_count(void);
+ASSAY_API assay_method_info assay_method_at(int index);
+/* Parameters of a method at their defaults.  Errors: ARGUMENT (no such method; the message lists
+ * them), MEMORY. */
+ASSAY_API assay_status assay_method_params(assay_context *context, const char *method,
+                                           assay_params **params_out);
+/* Methods and parameter tables as JSON: all, or the one named.  Release with assay_text_destroy. */
+ASSAY_API assay_status assay_methods_json(assay_context *context, const char *method,
+                                          char **text_out);
+
+/* ---- images ---- */
+
+typedef struct {
+    int         width, height;   /* pixels                                                        */
+    const char *camera;          /* name or decimal index; NULL: the first; a scene without one
+                                    is framed by a camera of its own                               */
+    uint64_t    seed;            /* of the random numbers                                         */
+    const char *layers;          /* comma-separated groups "color,gbuffer,split,irradiance" or
+                                    "all"; NULL: "all".  See docs/methods/path.md                 */
+} assay_render_options;
+
+/* Defaults: 512 x 512, first camera, seed 0, all layers. */
+ASSAY_API assay_render_options assay_render_options_default(void);
+
+/* What a render did.  Counts are exact and the same on every machine; seconds are not. */
+typedef struct {
+    uint64_t camera_rays, scatter_rays, shadow_rays, probe_rays; /* rays traced, by kind          */
+    uint64_t samples;                 /* camera paths                                              */
+    uint64_t spp_min, spp_max;        /* over pixels                                               */
+    double   relative_error;          /* mean over pixels of the standard error of the pixel's
+                                         luminance / the image's mean luminance                   */
+    double   seconds_build, seconds_render; /* wall                                                */
+    uint64_t peak_memory;             /* bytes, of the process                                     */
+    uint64_t bvh_bytes, scene_bytes;
+    int      threads;
+} assay_render_stats;
+
+/* Renders the scene at its current time.  stats_out may be NULL.
+ * Errors: ARGUMENT, MEMORY, LIMIT, CANCELLED. */
+ASSAY_API assay_status assay_render(assay_scene *scene, const char *method,
+                                    const assay_params *params, const assay_render_options *options,
+                                    assay_image **image_out, assay_render_stats *stats_out);
+
+/* Irradiance at points.  points: rows of x y z nx ny nz (m; normals are normalised).  The result has
+ * a row a point; its columns are named by assay_probe_columns.
+ * Gradients are central differences with common random numbers.
+ * Errors: ARGUMENT (columns other than 6, a zero normal), DOMAIN (not finite), UNSUPPORTED (the
+ * method has no probes), MEMORY, CANCELLED. */
+ASSAY_API assay_status assay_render_probes(assay_scene *scene, const char *method,
+                                           const assay_params *params, uint64_t seed,
+                                           const assay_array *points, assay_array **result_out,
+                                           assay_render_stats *stats_out);
+/* "E.R,E.G,E.B,..." */
+ASSAY_API const char *assay_probe_columns(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,74 @@
+/* alloc.c - blocks are aligned to 64 bytes by keeping the allocator's own pointer just before. */
+#include "core/alloc.h"
+
+#include <stdint.h>
+#include <string.h>
+
+#include "core/context_data.h"
+
+enum { ALIGNMENT = 64 };
+
+void *assay_allocate(assay_context *context, size_t count, size_t size)
+{
+    const size_t extra = ALIGNMENT + sizeof(void *);
+    if (size && count > (SIZE_MAX - extra) / size) {
+        return NULL;
+    }
+    const size_t          bytes     = count * size;
+    const assay_allocator allocator = context->options.allocator;
+    char                 *raw       = allocator.allocate(allocator.user, bytes + extra);
+    if (!raw) {
+        return NULL;
+    }
+    const uintptr_t start   = (uintptr_t)raw + sizeof(void *);
+    char           *aligned = raw + (sizeof(void *) + (ALIGNMENT - start % ALIGNMENT) % ALIGNMENT);
+    memcpy(aligned - sizeof(void *), &raw, sizeof raw);
+    memset(aligned, 0, bytes);
+    return aligned;
+}
+
+void assay_release(assay_context *context, void *memory)
+{
+    if (!memory) {
+        return;
+    }
+    char *raw = NULL;
+    memcpy(&raw, (char *)memory - sizeof(void *), sizeof raw);
+    context->options.allocator.release(context->options.allocator.user, raw);
+}
+
+assay_status assay_grow(assay_context *context, void **array, size_t *capacity, size_t needed,
+                        size_t size)
+{
+    if (needed <= *capacity) {
+        return ASSAY_OK;
+    }
+    size_t wanted = *capacity < SIZE_MAX / 2 ? *capacity * 2 : needed;
+    if (wanted < needed) {
+        wanted = needed;
+    }
+    if (wanted < 8) {
+        wanted = 8;
+    }
+    void *grown = assay_allocate(context, wanted, size);
+    if (!grown) {
+        return assay_fail_memory(context, "a growing array");
+    }
+    if (*array) {
+        memcpy(grown, *array, *capacity * size);
+        assay_release(context, *array);
+    }
+    *array    = grown;
+    *capacity = wanted;
+    return ASSAY_OK;
+}
+
+char *assay_copy_text(assay_context *context, const char *text)
+{
+    const size_t bytes = strlen(text) + 1;
+    char        *copy  = assay_allocate(context, bytes, 1);
+    if (copy) {
+        memcpy(copy, text, bytes);
+    }
+    return copy;
+}

@@ -1,0 +1,118 @@
+/* context.c - messages, progress and threads of a set of calls. */
+#include <omp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/context_data.h"
+
+#ifndef ASSAY_VERSION
+#error "the Makefile defines ASSAY_VERSION"
+#endif
+
+enum { ASSAY_MAX_THREADS = 1024 };
+
+static void *allocate_with_malloc(void *user, size_t bytes)
+{
+    (void)user;
+    return malloc(bytes);
+}
+
+static void release_with_free(void *user, void *memory)
+{
+    (void)user;
+    free(memory);
+}
+
+assay_status assay_context_create(const assay_context_options *options, assay_context **context_out)
+{
+    assay_context_options o = {0};
+    if (options) {
+        o = *options;
+    }
+    if (o.threads < 0 || o.threads > ASSAY_MAX_THREADS ||
+        !o.allocator.allocate != !o.allocator.release) {
+        return ASSAY_ERR_ARGUMENT;
+    }
+    if (!o.allocator.allocate) {
+        o.allocator = (assay_allocator){allocate_with_malloc, release_with_free, NULL};
+    }
+    if (o.threads == 0) {
+        o.threads = omp_get_num_procs();
+    }
+    assay_context *context = o.allocator.allocate(o.allocator.user, sizeof *context);
+    if (!context) {
+        return ASSAY_ERR_MEMORY;
+    }
+    memset(context, 0, sizeof *context);
+    context->options = o;
+    const char *isa  = getenv("ASSAY_ISA");
+    if (isa) {
+        snprintf(context->isa, sizeof context->isa, "%s", isa);
+    }
+    *context_out = context;
+    return ASSAY_OK;
+}
+
+void assay_context_destroy(assay_context *context)
+{
+    if (context) {
+        const assay_allocator allocator = context->options.allocator;
+        allocator.release(allocator.user, context);
+    }
+}
+
+const char *assay_context_error(const assay_context *context) { return context->error; }
+
+int assay_context_threads(const assay_context *context) { return context->options.threads; }
+
+const char *assay_context_isa(const assay_context *context)
+{
+    return context->isa[0] ? context->isa : NULL;
+}
+
+const char *assay_version(void) { return ASSAY_VERSION; }
+
+assay_status assay_fail(assay_context *context, assay_status status, const char *format, ...)
+{
+    /* A message may quote the previous one, so it is made aside. */
+    char    message[sizeof context->error];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    memcpy(context->error, message, sizeof message);
+    return status;
+}
+
+assay_status assay_fail_memory(assay_context *context, const char *what)
+{
+    return assay_fail(context, ASSAY_ERR_MEMORY, "out of memory for %s", what);
+}
+
+void assay_log(assay_context *context, assay_log_level level, const char *format, ...)
+{
+    if (!context->options.log) {
+        return;
+    }
+    char    line[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    context->options.log(context->options.user, level, line);
+}
+
+assay_status assay_progress(assay_context *context, const char *phase, uint64_t done,
+                            uint64_t total)
+{
+    if (!context->options.progress) {
+        return ASSAY_OK;
+    }
+    const double fraction = total ? (double)done / (double)total : 1.0;
+    if (context->options.progress(context->options.user, phase, fraction)) {
+        return ASSAY_OK;
+    }
+    return assay_fail(context, ASSAY_ERR_CANCELLED, "cancelled while in phase '%s'", phase);
+}
