@@ -55,6 +55,9 @@ ASSAY_API const char *assay_context_error(const assay_context *context);
 /* Worker threads in use, at least 1. */
 ASSAY_API int assay_context_threads(const assay_context *context);
 
+/* Releases a text that a call made; NULL is legal. */
+ASSAY_API void assay_text_destroy(assay_context *context, char *text);
+
 /* "0.1.0"; borrowed. */
 ASSAY_API const char *assay_version(void);
 

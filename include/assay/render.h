@@ -49,14 +49,14 @@ ASSAY_API assay_render_options assay_render_options_default(void);
 
 /* What a render did.  Counts are exact and the same on every machine; seconds are not. */
 typedef struct {
-    uint64_t camera_rays, scatter_rays, shadow_rays, probe_rays; /* rays traced, by kind          */
+    uint64_t camera_rays, scatter_rays, shadow_rays; /* rays traced, by kind                      */
     uint64_t samples;                 /* camera paths                                              */
     uint64_t spp_min, spp_max;        /* over pixels                                               */
     double   relative_error;          /* mean over pixels of the standard error of the pixel's
                                          luminance / the image's mean luminance                   */
     double   seconds_build, seconds_render; /* wall                                                */
     uint64_t peak_memory;             /* bytes, of the process                                     */
-    uint64_t bvh_bytes, scene_bytes;
+    uint64_t bvh_bytes, geometry_bytes, texture_bytes;
     int      threads;
 } assay_render_stats;
 
@@ -67,7 +67,7 @@ ASSAY_API assay_status assay_render(assay_scene *scene, const char *method,
                                     assay_image **image_out, assay_render_stats *stats_out);
 
 /* Irradiance at points.  points: rows of x y z nx ny nz (m; normals are normalised).  The result has
- * a row a point; its columns are named by assay_probe_columns.
+ * a row a point; its columns are named by assay_probe_column_name.
  * Gradients are central differences with common random numbers.
  * Errors: ARGUMENT (columns other than 6, a zero normal), DOMAIN (not finite), UNSUPPORTED (the
  * method has no probes), MEMORY, CANCELLED. */
@@ -75,8 +75,13 @@ ASSAY_API assay_status assay_render_probes(assay_scene *scene, const char *metho
                                            const assay_params *params, uint64_t seed,
                                            const assay_array *points, assay_array **result_out,
                                            assay_render_stats *stats_out);
-/* "E.R,E.G,E.B,..." */
-ASSAY_API const char *assay_probe_columns(void);
+/* Columns of a probe's result: 18 plain ones ("E.R", "E.G", "E.B", "Variance.E.R", ..., then
+ * "EDirect" and "EIndirect" likewise), and with gradients 36 more ("dE/dx.R": W/m3, "dE/dax.R":
+ * W/(m2 rad) about the x axis, ..., each with its variance). */
+#define ASSAY_PROBE_COLUMNS_PLAIN 18
+#define ASSAY_PROBE_COLUMNS       54
+/* The name of a column.  False, and name_out untouched, outside [0, ASSAY_PROBE_COLUMNS). */
+ASSAY_API bool assay_probe_column_name(int column, char name_out[32]);
 
 #ifdef __cplusplus
 }

@@ -68,7 +68,6 @@ ASSAY_API const char *assay_scene_digest(const assay_scene *scene);
 
 /* The whole report as a JSON text; release it with assay_text_destroy.  Errors: MEMORY. */
 ASSAY_API assay_status assay_scene_report_json(const assay_scene *scene, char **text_out);
-ASSAY_API void         assay_text_destroy(assay_context *context, char *text);
 
 #ifdef __cplusplus
 }

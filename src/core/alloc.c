@@ -72,3 +72,5 @@ char *assay_copy_text(assay_context *context, const char *text)
     }
     return copy;
 }
+
+void assay_text_destroy(assay_context *context, char *text) { assay_release(context, text); }

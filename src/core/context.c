@@ -91,7 +91,7 @@ assay_status assay_fail_memory(assay_context *context, const char *what)
     return assay_fail(context, ASSAY_ERR_MEMORY, "out of memory for %s", what);
 }
 
-void assay_log(assay_context *context, assay_log_level level, const char *format, ...)
+void assay_inform(assay_context *context, assay_log_level level, const char *format, ...)
 {
     if (!context->options.log) {
         return;

@@ -14,7 +14,7 @@ assay_status assay_fail(assay_context *context, assay_status status, const char 
 /* "out of memory" with the standard words. */
 assay_status assay_fail_memory(assay_context *context, const char *what);
 
-void assay_log(assay_context *context, assay_log_level level, const char *format, ...)
+void assay_inform(assay_context *context, assay_log_level level, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 /* Reports done of total; ASSAY_ERR_CANCELLED (message set) when the user wants to stop. */

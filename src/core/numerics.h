@@ -1,17 +1,17 @@
 /* numerics.h - elementary functions that give the same bits on every machine.
  *
- * libm's sin, exp, pow ... change their last bit with the CPU; SLEEF's plain-C, FMA-free variants do
- * not.  Nothing outside this file calls either.  sqrt, fabs, floor and division are exact by IEEE
- * 754 and need no care. */
+ * libm's sin, exp, pow ... change their last bit with the CPU; SLEEF's plain-C, FMA-free variants
+ * do not.  Nothing outside this file calls either.  sqrt, fabs, floor and division are exact by
+ * IEEE 754 and need no care. */
 #ifndef ASSAY_CORE_NUMERICS_H
 #define ASSAY_CORE_NUMERICS_H
 
 #include <math.h>
 #include <sleef.h>
 
-#define ASSAY_PI      3.14159265358979323846
-#define ASSAY_INV_PI  0.31830988618379067154
-#define ASSAY_TWO_PI  6.28318530717958647693
+#define ASSAY_PI 3.14159265358979323846
+#define ASSAY_INV_PI 0.31830988618379067154
+#define ASSAY_TWO_PI 6.28318530717958647693
 
 /* All within 1.0 unit of the last place. */
 static inline double assay_sin(double x) { return Sleef_cinz_sind1_u10purec(x); }
@@ -35,13 +35,13 @@ typedef struct {
 /* sin and cos of 2 pi x: the azimuth of a uniform number, without the rounding of 2 pi. */
 static inline assay_sincos assay_sincos_turns(double x)
 {
-    const Sleef_double2 s = Sleef_cinz_sincospid1_u05purec(2.0 * x);
+    const Sleef_double_2 s = Sleef_cinz_sincospid1_u05purec(2.0 * x);
     return (assay_sincos){s.x, s.y};
 }
 
 static inline assay_sincos assay_sincos_radians(double x)
 {
-    const Sleef_double2 s = Sleef_cinz_sincosd1_u10purec(x);
+    const Sleef_double_2 s = Sleef_cinz_sincosd1_u10purec(x);
     return (assay_sincos){s.x, s.y};
 }
 

@@ -22,11 +22,11 @@ static bool float_environment_is_sound(void)
 }
 
 typedef struct {
-    assay_context      *context;
-    const char         *phase;
-    uint64_t            count;
-    assay_parallel_body body;
-    void               *user;
+    assay_context       *context;
+    const char          *phase;
+    uint64_t             count;
+    assay_parallel_body  body;
+    void                *user;
     atomic_uint_fast64_t next, done;
     atomic_bool          stop;
 } parallel_loop;
@@ -66,12 +66,13 @@ static void work(parallel_loop *loop, int worker, uint64_t *failed_index,
 assay_status assay_parallel_for(assay_context *context, const char *phase, uint64_t count,
                                 assay_parallel_body body, void *user)
 {
-    parallel_loop loop = {.context = context, .phase = phase, .count = count, .body = body,
-                          .user = user};
-    uint64_t     lowest = UINT64_MAX;
-    assay_status result = ASSAY_OK;
-    const int    threads =
-        count < (uint64_t)assay_context_threads(context) ? (int)count : assay_context_threads(context);
+    parallel_loop loop = {
+        .context = context, .phase = phase, .count = count, .body = body, .user = user};
+    uint64_t     lowest  = UINT64_MAX;
+    assay_status result  = ASSAY_OK;
+    const int    threads = count < (uint64_t)assay_context_threads(context)
+                               ? (int)count
+                               : assay_context_threads(context);
 #pragma omp parallel num_threads(threads > 0 ? threads : 1)
     {
         uint64_t     index  = UINT64_MAX;

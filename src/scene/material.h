@@ -40,7 +40,8 @@ typedef enum {
     ASSAY_MATERIAL_UNLIT, /* KHR_materials_unlit: emits its base colour to the camera, scatters nothing */
     ASSAY_MATERIAL_PHONG, /* extras.assay {"brdf":"phong"}             */
     ASSAY_MATERIAL_WARD,  /* extras.assay {"brdf":"ward"}              */
-    ASSAY_MATERIAL_WARD_PUBLISHED
+    ASSAY_MATERIAL_WARD_PUBLISHED,
+    ASSAY_MATERIAL_LAMBERT /* force_diffuse: base colour / pi on both sides, nothing else */
 } assay_material_model;
 
 typedef struct {
@@ -53,6 +54,8 @@ typedef struct {
     assay_alpha_mode     alpha_mode;
     double               alpha_cutoff;
     bool                 double_sided;
+    bool                 emission_two_sided; /* as the file says, even where force_diffuse made the
+                                                material double_sided                               */
     double               ior, specular_factor, transmission;
     assay_rgb            specular_color;
     bool                 solid;             /* a volume lies behind: refraction            */

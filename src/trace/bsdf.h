@@ -3,7 +3,10 @@
  * All directions are unit vectors in the local shading frame (z = shading normal on the side of the
  * material's front), pointing away from the surface: wo to where light is seen from, wi to where it
  * comes from.  Reflection: wo.z wi.z > 0, transmission: < 0.  A two-sided reflecting model treats
- * wo.z < 0 by mirroring both directions. */
+ * wo.z < 0 by mirroring both directions; where a solid's boundary refracts, wo.z < 0 is inside.
+ * Refraction is of radiance: light that goes from a medium of index n into one of index n' gains
+ * (n' / n)^2, so that inside a solid radiance is n^2 times what it is outside.
+ * Formulas, sources and departures: docs/bsdf.md. */
 #ifndef ASSAY_TRACE_BSDF_H
 #define ASSAY_TRACE_BSDF_H
 
@@ -40,7 +43,8 @@ typedef struct {
 /* alpha under which a GGX lobe is taken as a mirror. */
 #define ASSAY_ALPHA_MIN 1e-4
 
-/* Material defaults of glTF: white, metallic 1, roughness 1, ior 1.5, ... */
+/* Material defaults of glTF: white, metallic 1, roughness 1, ior 1.5, ...; for Phong and Ward the
+ * specular colour is black, exponent and slopes 1. */
 assay_bsdf assay_bsdf_default(assay_bsdf_model model);
 
 /* What one direction scatters. */
@@ -53,7 +57,7 @@ assay_bsdf_value assay_bsdf_evaluate(const assay_bsdf *bsdf, assay_vec3 wo, assa
 
 typedef struct {
     assay_vec3 wi;
-    assay_rgb  weight;      /* f |wi.z| / pdf; for a specular lobe its reflectance / probability */
+    assay_rgb  weight;      /* f |wi.z| / pdf; for a specular lobe what it scatters / probability */
     double     pdf;         /* as assay_bsdf_evaluate would say; of a specular lobe: probability */
     bool       specular;    /* from a lobe with a single direction                               */
     bool       transmitted; /* wi is on the other side                                           */

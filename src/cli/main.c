@@ -1,0 +1,55 @@
+/* main.c - which command was asked for. */
+#include <stdio.h>
+#include <string.h>
+
+#include "console.h"
+
+static const struct {
+    const char *name;
+    int (*run)(int count, char **argv);
+    const char *summary;
+} COMMANDS[] = {
+    {"render", cli_render, "render a glTF scene to an OpenEXR image, or irradiance at points"},
+    {"scene", cli_scene, "tell what a glTF scene holds, and what of it is not supported"},
+    {"methods", cli_methods, "list the methods, their parameters, ranges and sources"},
+    {"diff", cli_diff, "compare two OpenEXR images"},
+};
+
+enum { COMMAND_COUNT = sizeof COMMANDS / sizeof COMMANDS[0] };
+
+static void print_usage(FILE *out)
+{
+    fprintf(out,
+            "assay %s - reference renderer and test oracle for light caching\n\n"
+            "usage: assay COMMAND ...    (assay COMMAND --help tells more)\n\n",
+            assay_version());
+    for (int i = 0; i < COMMAND_COUNT; i++) {
+        fprintf(out, "  %-10s %s\n", COMMANDS[i].name, COMMANDS[i].summary);
+    }
+    fprintf(out, "\nexit codes: 0 success; 1 the images differ; 2 bad input or option; 3 out of\n"
+                 "memory or cannot write; 4 internal error; 130 interrupted\n");
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 2) {
+        print_usage(stderr);
+        return CLI_EXIT_USAGE;
+    }
+    const char *name = argv[1];
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
+        print_usage(stdout);
+        return 0;
+    }
+    if (strcmp(name, "--version") == 0) {
+        printf("assay %s\n", assay_version());
+        return 0;
+    }
+    for (int i = 0; i < COMMAND_COUNT; i++) {
+        if (strcmp(COMMANDS[i].name, name) == 0) {
+            return COMMANDS[i].run(argc - 2, argv + 2);
+        }
+    }
+    fprintf(stderr, "assay: unknown command '%s' (assay --help lists them)\n", name);
+    return CLI_EXIT_USAGE;
+}

@@ -1,0 +1,194 @@
+/* render_request.c - the options of `assay render`.
+ *
+ * Parameters of the method are options too: --NAME VALUE and -p NAME=VALUE say the same.  They are
+ * checked once the method is known, by the library. */
+#include "render_request.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "options.h"
+#include "scene_options.h"
+
+enum {
+    OPT_METHOD,
+    OPT_PARAM,
+    OPT_OUTPUT,
+    OPT_PNG,
+    OPT_EXPOSURE,
+    OPT_CAMERA,
+    OPT_SIZE,
+    OPT_LAYERS,
+    OPT_POINTS,
+    OPT_SEED,
+    OPT_TIME,
+    OPT_FRAMES,
+    OPT_FPS,
+    OPT_STATS,
+    OPT_THREADS,
+    OPT_QUIET,
+    OPT_HELP
+};
+
+static const cli_option OPTIONS[] = {
+    [OPT_METHOD]   = {"method", 'm', "NAME", "method (default path); assay methods lists them"},
+    [OPT_PARAM]    = {"param", 'p', "K=V", "set a parameter of the method; --K V says the same"},
+    [OPT_OUTPUT]   = {"output", 'o', "F", "image (.exr), or with --points table (.npy)"},
+    [OPT_PNG]      = {"png", 0, "F.png", "also a preview, 8 bits, sRGB"},
+    [OPT_EXPOSURE] = {"exposure", 0, "STOPS", "of the preview (default 0)"},
+    [OPT_CAMERA]   = {"camera", 0, "C", "name or number (default: the first)"},
+    [OPT_SIZE]     = {"size", 0, "WxH", "pixels (default 512x512)"},
+    [OPT_LAYERS]   = {"layers", 0, "L", "color,gbuffer,split,irradiance or all (default)"},
+    [OPT_POINTS]   = {"points", 0, "F.npy", "irradiance at points: rows of x y z nx ny nz"},
+    [OPT_SEED]     = {"seed", 0, "S", "of the random numbers (default 0)"},
+    [OPT_TIME]     = {"time", 0, "T", "time of animations, s (default 0)"},
+    [OPT_FRAMES]   = {"frames", 0, "A:B", "frames A to B; a run of # in a name is the number"},
+    [OPT_FPS]      = {"fps", 0, "F", "frames a second (default 24)"},
+    [OPT_STATS]    = {"stats", 0, "F.json", "write rays, samples, seconds, memory"},
+    [OPT_THREADS]  = {"threads", 0, "N", "0: one a processor (default); never changes a bit"},
+    [OPT_QUIET]    = {"quiet", 'q', NULL, "no progress, no warnings"},
+    [OPT_HELP]     = {"help", 'h', NULL, "this text"},
+    CLI_SCENE_OPTIONS,
+    {0}};
+
+static const char *add_param(cli_render_request *request, const char *name, size_t length,
+                             const char *value)
+{
+    if (request->param_count == CLI_MAX_PARAMS) {
+        return "too many parameters";
+    }
+    if (length >= sizeof request->names[0]) {
+        return "the parameter's name is too long";
+    }
+    /* Flags are spelled with '-', the names in the table with '_'. */
+    char *copy = request->names[request->param_count];
+    for (size_t i = 0; i < length; i++) {
+        copy[i] = name[i] == '-' ? '_' : name[i];
+    }
+    copy[length]                                = '\0';
+    request->params[request->param_count].name  = copy;
+    request->params[request->param_count].value = value;
+    request->param_count++;
+    return NULL;
+}
+
+static const char *take_param(cli_render_request *request, const char *value)
+{
+    const char *equals = strchr(value, '=');
+    return equals ? add_param(request, value, (size_t)(equals - value), equals + 1)
+                  : "takes NAME=VALUE";
+}
+
+static const char *take_unknown(void *user, const char *name, const char *value)
+{
+    return add_param(user, name, strlen(name), value);
+}
+
+static const char *take_number(cli_render_request *request, int index, const char *value)
+{
+    const char        *problem = NULL;
+    unsigned long long seed    = 0;
+    switch (index) {
+    case OPT_EXPOSURE: return cli_read_real(value, &request->exposure);
+    case OPT_SIZE: return cli_read_size(value, &request->render.width, &request->render.height);
+    case OPT_SEED:
+        problem              = cli_read_seed(value, &seed);
+        request->render.seed = seed;
+        return problem;
+    case OPT_TIME: return cli_read_real(value, &request->time);
+    case OPT_FRAMES:
+        request->has_frames = true;
+        return cli_read_range(value, &request->first_frame, &request->last_frame);
+    case OPT_FPS:
+        problem = cli_read_real(value, &request->fps);
+        return problem || !(request->fps > 0.0) ? "takes a number > 0" : NULL;
+    case OPT_THREADS: return cli_read_count(value, 0, 1024, &request->threads);
+    default: break;
+    }
+    cli_scene_option(&request->scene_options, OPTIONS[index].name, value, &problem);
+    return problem;
+}
+
+static const char *take(void *user, int index, const char *value)
+{
+    cli_render_request *request = user;
+    switch (index) {
+    case OPT_METHOD: request->method = value; return NULL;
+    case OPT_PARAM: return take_param(request, value);
+    case OPT_OUTPUT: request->output = value; return NULL;
+    case OPT_PNG: request->png = value; return NULL;
+    case OPT_CAMERA: request->render.camera = value; return NULL;
+    case OPT_LAYERS: request->render.layers = value; return NULL;
+    case OPT_POINTS: request->points = value; return NULL;
+    case OPT_STATS: request->stats = value; return NULL;
+    case OPT_QUIET: request->quiet = true; return NULL;
+    case OPT_HELP: request->help = true; return NULL;
+    default: break;
+    }
+    if (index >= 0) {
+        return take_number(request, index, value);
+    }
+    if (request->scene) {
+        return "one scene at a time";
+    }
+    request->scene = value;
+    return NULL;
+}
+
+void cli_render_request_help(void)
+{
+    printf("usage: assay render SCENE.gltf -o OUT.exr [-m METHOD] [-p K=V ...] ...\n");
+    cli_print_options(OPTIONS);
+    printf("\nParameters of the method `path` (assay methods tells more):\n");
+    for (int i = 0; i < assay_method_count(); i++) {
+        const assay_method_info method = assay_method_at(i);
+        for (const assay_param_desc *p = method.params; strcmp(method.name, "path") == 0 && p->name;
+             p++) {
+            printf("      --%-24s (default %s)\n", p->name, p->default_value);
+        }
+    }
+}
+
+bool cli_render_request_parse(int count, char **argv, cli_render_request *request)
+{
+    *request = (cli_render_request){.method        = "path",
+                                    .scene_options = assay_scene_options_default(),
+                                    .render        = assay_render_options_default(),
+                                    .fps           = 24.0};
+    if (!cli_parse("render", count, argv, OPTIONS, take, take_unknown, request)) {
+        return false;
+    }
+    const char *missing = request->help      ? NULL
+                          : !request->scene  ? "no scene given"
+                          : !request->output ? "no output given (-o OUT.exr)"
+                          : request->points && request->png
+                              ? "--png has no picture to draw with --points"
+                              : NULL;
+    if (missing) {
+        fprintf(stderr, "assay render: %s (assay render --help tells how)\n", missing);
+    }
+    return !missing;
+}
+
+bool cli_frame_name(const cli_render_request *request, const char *pattern, long frame, char *out,
+                    size_t size)
+{
+    const char *hash = strrchr(pattern, '#');
+    int         used;
+    if (!request->has_frames) {
+        used = snprintf(out, size, "%s", pattern);
+    } else if (hash) {
+        const char *start = hash;
+        while (start > pattern && start[-1] == '#') {
+            start--;
+        }
+        used = snprintf(out, size, "%.*s%0*ld%s", (int)(start - pattern), pattern,
+                        (int)(hash - start + 1), frame, hash + 1);
+    } else {
+        const char *slash = strrchr(pattern, '/');
+        const char *dot   = strrchr(slash ? slash : pattern, '.');
+        const int   stem  = dot ? (int)(dot - pattern) : (int)strlen(pattern);
+        used = snprintf(out, size, "%.*s.%04ld%s", stem, pattern, frame, dot ? dot : "");
+    }
+    return used >= 0 && (size_t)used < size;
+}

@@ -1,0 +1,27 @@
+/* path.h - the method `path`: path tracing, the ground truth under all others. */
+#ifndef ASSAY_METHODS_PATH_PATH_H
+#define ASSAY_METHODS_PATH_PATH_H
+
+#include "methods/method.h"
+#include "trace/path_trace.h"
+
+extern const assay_method assay_method_path;
+
+/* The parameters, read. */
+typedef struct {
+    assay_context      *context;
+    assay_path_settings settings;
+    uint32_t            spp, max_spp;
+    double              target_error;   /* 0: off                                       */
+    bool                gradients;      /* of probes                                    */
+    double              gradient_step;  /* m; 0: a thousandth of the scene's diagonal   */
+    double              gradient_angle; /* rad                                          */
+} assay_path_state;
+
+assay_status assay_path_render(void *state, const assay_frame *frame, assay_film *film,
+                               assay_ray_counts *counts);
+assay_status assay_path_probe(void *state, const assay_frame *frame,
+                              const assay_probe_points *points, double *rows,
+                              assay_ray_counts *counts);
+
+#endif

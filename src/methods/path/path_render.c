@@ -1,0 +1,199 @@
+/* path_render.c - an image by path tracing.
+ *
+ * Every pixel has two streams of samples: radiance through random places of the pixel, and
+ * irradiance at the one visible point behind its centre.  Passes over all pixels follow one another
+ * until enough; a pixel's samples are numbered through, so cutting them into passes changes no bit.
+ */
+#include "core/alloc.h"
+#include "core/context.h"
+#include "core/parallel.h"
+#include "methods/path/path.h"
+#include "trace/camera_ray.h"
+
+enum { TILE = 16 };
+
+/* One pass: samples [first, first + count) of every pixel. */
+typedef struct {
+    const assay_path_state *state;
+    const assay_frame      *frame;
+    assay_film             *film;
+    assay_ray_counts       *worker_counts;
+    uint32_t                first, count;
+    uint32_t                tiles_across;
+} render_pass;
+
+static assay_status add_radiance(const render_pass *pass, int x, int y, uint64_t pixel,
+                                 assay_ray_counts *counts)
+{
+    const assay_frame *frame = pass->frame;
+    for (uint32_t s = pass->first; s < pass->first + pass->count; s++) {
+        assay_random random = assay_random_start(frame->seed, ASSAY_STAGE_CAMERA, pixel, s);
+        const double dx     = assay_random_next(&random);
+        const double dy     = assay_random_next(&random);
+        assay_vec3   origin, direction;
+        assay_camera_ray(frame->camera, x + dx, y + dy, frame->width, frame->height, &origin,
+                         &direction);
+        const assay_path_light light = assay_path_radiance(frame->world, &pass->state->settings,
+                                                           origin, direction, &random, counts);
+        if (!assay_film_add(pass->film, pixel, ASSAY_FILM_COLOR,
+                            rgb_add(light.direct, light.indirect)) ||
+            !assay_film_add(pass->film, pixel, ASSAY_FILM_DIRECT, light.direct) ||
+            !assay_film_add(pass->film, pixel, ASSAY_FILM_INDIRECT, light.indirect)) {
+            return ASSAY_ERR_DOMAIN;
+        }
+    }
+    return ASSAY_OK;
+}
+
+/* The visible point behind the pixel's centre, as a vertex; false where the ray leaves the scene.
+ */
+static bool find_visible(const assay_frame *frame, int x, int y, assay_ray_counts *counts,
+                         assay_vertex *vertex_out)
+{
+    assay_vec3 origin, direction;
+    assay_hit  hit;
+    assay_camera_ray(frame->camera, x + 0.5, y + 0.5, frame->width, frame->height, &origin,
+                     &direction);
+    if (!assay_world_visible(frame->world, origin, direction, &counts->camera, &hit)) {
+        return false;
+    }
+    assay_vertex_at(frame->world, &hit, direction, vertex_out);
+    return true;
+}
+
+static assay_visible_point describe(const assay_frame *frame, const assay_vertex *vertex)
+{
+    const double side = vertex->front ? 1.0 : -1.0;
+    return (assay_visible_point){
+        .hit       = true,
+        .albedo    = assay_bsdf_albedo(&vertex->bsdf),
+        .position  = vertex->surface.position,
+        .ng        = vec3_scale(vertex->surface.ng, side),
+        .ns        = vec3_scale(vertex->surface.ns, side),
+        .z         = assay_camera_depth(frame->camera, vertex->surface.position),
+        .uv        = {vertex->surface.uv[0][0], vertex->surface.uv[0][1]},
+        .material  = vertex->surface.material,
+        .primitive = vertex->surface.triangle,
+    };
+}
+
+static assay_status add_irradiance(const render_pass *pass, const assay_vertex *visible,
+                                   uint64_t pixel, assay_ray_counts *counts)
+{
+    const double       side  = visible->front ? 1.0 : -1.0;
+    const assay_frame3 frame = frame3_from_z(vec3_scale(visible->surface.ns, side));
+    assay_vertex       receiver;
+    assay_vertex_receiver(visible->surface.position, &frame, vec3_scale(visible->surface.ng, side),
+                          &receiver);
+    for (uint32_t s = pass->first; s < pass->first + pass->count; s++) {
+        assay_random random =
+            assay_random_start(pass->frame->seed, ASSAY_STAGE_IRRADIANCE, pixel, s);
+        const assay_path_light e = assay_path_scatter(pass->frame->world, &pass->state->settings,
+                                                      &receiver, &random, counts);
+        if (!assay_film_add(pass->film, pixel, ASSAY_FILM_IRRADIANCE,
+                            rgb_add(e.direct, e.indirect)) ||
+            !assay_film_add(pass->film, pixel, ASSAY_FILM_IRRADIANCE_DIRECT, e.direct) ||
+            !assay_film_add(pass->film, pixel, ASSAY_FILM_IRRADIANCE_INDIRECT, e.indirect)) {
+            return ASSAY_ERR_DOMAIN;
+        }
+    }
+    return ASSAY_OK;
+}
+
+static assay_status render_pixel(const render_pass *pass, int x, int y, assay_ray_counts *counts)
+{
+    const assay_frame *frame  = pass->frame;
+    const uint64_t     pixel  = (uint64_t)y * (uint64_t)frame->width + (uint64_t)x;
+    assay_status       status = ASSAY_OK;
+    if (frame->layers & (ASSAY_LAYERS_COLOR | ASSAY_LAYERS_SPLIT)) {
+        status = add_radiance(pass, x, y, pixel, counts);
+    }
+    if (status != ASSAY_OK || !(frame->layers & (ASSAY_LAYERS_GBUFFER | ASSAY_LAYERS_IRRADIANCE))) {
+        return status;
+    }
+    assay_visible_point point = {.material = UINT32_MAX, .primitive = UINT32_MAX};
+    assay_vertex        visible;
+    if (find_visible(frame, x, y, counts, &visible)) {
+        point = describe(frame, &visible);
+        if (frame->layers & ASSAY_LAYERS_IRRADIANCE) {
+            status = add_irradiance(pass, &visible, pixel, counts);
+        }
+    }
+    assay_film_set_visible(pass->film, pixel, &point);
+    return status;
+}
+
+static assay_status render_tile(void *user, uint64_t index, int worker)
+{
+    const render_pass *pass   = user;
+    const int          x0     = (int)(index % pass->tiles_across) * TILE;
+    const int          y0     = (int)(index / pass->tiles_across) * TILE;
+    const int          x1     = x0 + TILE < pass->frame->width ? x0 + TILE : pass->frame->width;
+    const int          y1     = y0 + TILE < pass->frame->height ? y0 + TILE : pass->frame->height;
+    assay_status       status = ASSAY_OK;
+    for (int y = y0; y < y1 && status == ASSAY_OK; y++) {
+        for (int x = x0; x < x1 && status == ASSAY_OK; x++) {
+            status = render_pixel(pass, x, y, &pass->worker_counts[worker]);
+        }
+    }
+    return status;
+}
+
+/* How many more samples a pixel wants: the error falls with the square root of their number; at
+ * least a quarter more, at most as many again, so that a poor first guess cannot mislead. */
+static uint32_t next_count(const assay_path_state *state, uint32_t done, double error)
+{
+    if (!(state->target_error > 0.0) || error <= state->target_error || done >= state->max_spp) {
+        return 0;
+    }
+    const double   ratio  = error / state->target_error;
+    const double   wanted = ceil((double)done * (ratio * ratio - 1.0));
+    const double   least  = ceil(0.25 * (double)done);
+    const double   most   = (double)done;
+    const uint32_t count  = (uint32_t)(wanted < least ? least : wanted > most ? most : wanted);
+    return count < state->max_spp - done ? count : state->max_spp - done;
+}
+
+static assay_status run_passes(render_pass *pass)
+{
+    const assay_frame *frame = pass->frame;
+    const uint32_t     down  = (uint32_t)((frame->height + TILE - 1) / TILE);
+    pass->count              = pass->state->spp;
+    while (pass->count > 0) {
+        const assay_status status = assay_parallel_for(
+            frame->context, "render", (uint64_t)pass->tiles_across * down, render_tile, pass);
+        if (status == ASSAY_ERR_DOMAIN) {
+            return assay_fail(frame->context, status,
+                              "the scene gives light that is no finite number: its emission or "
+                              "scale is too extreme");
+        }
+        if (status != ASSAY_OK) {
+            return status;
+        }
+        pass->first += pass->count;
+        pass->count = next_count(pass->state, pass->first, assay_film_relative_error(pass->film));
+    }
+    return ASSAY_OK;
+}
+
+assay_status assay_path_render(void *state, const assay_frame *frame, assay_film *film,
+                               assay_ray_counts *counts)
+{
+    const int         threads = assay_context_threads(frame->context);
+    assay_ray_counts *worker_counts =
+        assay_allocate(frame->context, (size_t)threads, sizeof *worker_counts);
+    if (!worker_counts) {
+        return assay_fail_memory(frame->context, "ray counts");
+    }
+    render_pass        pass   = {.state         = state,
+                                 .frame         = frame,
+                                 .film          = film,
+                                 .worker_counts = worker_counts,
+                                 .tiles_across  = (uint32_t)((frame->width + TILE - 1) / TILE)};
+    const assay_status status = run_passes(&pass);
+    for (int i = 0; i < threads; i++) {
+        assay_ray_counts_add(counts, &worker_counts[i]);
+    }
+    assay_release(frame->context, worker_counts);
+    return status;
+}

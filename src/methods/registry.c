@@ -1,0 +1,30 @@
+/* registry.c - the list of methods: one line each. */
+#include "methods/registry.h"
+
+#include <string.h>
+
+#include "methods/path/path.h"
+
+static const assay_method *const METHODS[] = {
+    &assay_method_path,
+};
+
+enum { METHOD_COUNT = sizeof METHODS / sizeof METHODS[0] };
+
+const assay_method *assay_method_find(const char *name)
+{
+    for (int i = 0; i < METHOD_COUNT; i++) {
+        if (strcmp(METHODS[i]->name, name) == 0) {
+            return METHODS[i];
+        }
+    }
+    return NULL;
+}
+
+int assay_method_count(void) { return METHOD_COUNT; }
+
+assay_method_info assay_method_at(int index)
+{
+    const assay_method *method = METHODS[index];
+    return (assay_method_info){method->name, method->summary, method->params};
+}

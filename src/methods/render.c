@@ -1,0 +1,188 @@
+/* render.c - one render from scene to image: world, method, film, metadata. */
+#include "assay/render.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/alloc.h"
+#include "core/context.h"
+#include "core/process.h"
+#include "methods/run.h"
+
+assay_render_options assay_render_options_default(void)
+{
+    return (assay_render_options){.width = 512, .height = 512};
+}
+
+/* By name first, so that a camera called "1" can be had; then by number. */
+static assay_status find_camera(const assay_scene *scene, const char *name,
+                                const assay_camera **camera_out)
+{
+    uint32_t index = 0;
+    if (name) {
+        while (index < scene->world_camera_count &&
+               strcmp(scene->world_cameras[index].name, name) != 0) {
+            index++;
+        }
+        if (index == scene->world_camera_count) {
+            char               *end       = NULL;
+            const unsigned long number    = strtoul(name, &end, 10);
+            const bool          is_number = *name >= '0' && *name <= '9' && *end == '\0';
+            index = is_number && number < scene->world_camera_count ? (uint32_t)number : index;
+        }
+    }
+    if (index >= scene->world_camera_count) {
+        return assay_fail(scene->context, ASSAY_ERR_ARGUMENT,
+                          "%s: no camera '%.64s'; `assay scene` lists the %u there are",
+                          scene->path, name ? name : "0", scene->world_camera_count);
+    }
+    *camera_out = &scene->world_cameras[index];
+    return ASSAY_OK;
+}
+
+static assay_status check_options(assay_context *context, const assay_render_options *options)
+{
+    if (options->width < 1 || options->height < 1 || options->width > ASSAY_IMAGE_MAX_SIDE ||
+        options->height > ASSAY_IMAGE_MAX_SIDE) {
+        return assay_fail(context, ASSAY_ERR_ARGUMENT,
+                          "an image must be 1 to %d pixels a side, not %d x %d",
+                          ASSAY_IMAGE_MAX_SIDE, options->width, options->height);
+    }
+    return ASSAY_OK;
+}
+
+/* ---- metadata ---- */
+
+static assay_status set_text(assay_image *image, assay_status status, const char *name,
+                             const char *value)
+{
+    return status != ASSAY_OK ? status : assay_image_set_attribute(image, name, value);
+}
+
+static assay_status set_vector(assay_image *image, assay_status status, const char *name,
+                               assay_vec3 v)
+{
+    char text[96];
+    snprintf(text, sizeof text, "%.17g %.17g %.17g", v.x, v.y, v.z);
+    return set_text(image, status, name, text);
+}
+
+static assay_status set_number(assay_image *image, assay_status status, const char *name, double x)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.17g", x);
+    return set_text(image, status, name, text);
+}
+
+static assay_status describe_camera(assay_image *image, const assay_camera *camera)
+{
+    assay_status s = set_text(image, ASSAY_OK, "assay:camera", camera->name);
+    s              = set_vector(image, s, "assay:camera.position", camera->position);
+    s              = set_vector(image, s, "assay:camera.forward", camera->forward);
+    s              = set_vector(image, s, "assay:camera.up", camera->up);
+    s              = set_vector(image, s, "assay:camera.right", camera->right);
+    if (camera->orthographic) {
+        s = set_number(image, s, "assay:camera.xmag", camera->xmag);
+        return set_number(image, s, "assay:camera.ymag", camera->ymag);
+    }
+    return set_number(image, s, "assay:camera.yfov", camera->yfov);
+}
+
+static assay_status describe(assay_image *image, const assay_scene *scene,
+                             const assay_method *method, const assay_params *params,
+                             const assay_frame *frame)
+{
+    char seed[32];
+    snprintf(seed, sizeof seed, "%llu", (unsigned long long)frame->seed);
+    assay_status s = set_text(image, ASSAY_OK, "assay:version", assay_version());
+    s              = set_text(image, s, "assay:method", method->name);
+    s              = set_text(image, s, "assay:seed", seed);
+    s              = set_text(image, s, "assay:scene.digest", scene->digest);
+    s              = set_number(image, s, "assay:scene.time", scene->time);
+    s              = s != ASSAY_OK ? s : describe_camera(image, frame->camera);
+    for (const assay_param_desc *p = method->params; p->name && s == ASSAY_OK; p++) {
+        char name[96];
+        snprintf(name, sizeof name, "assay:%s.%s", method->name, p->name);
+        s = set_text(image, s, name, assay_params_text(params, p->name));
+    }
+    return s;
+}
+
+/* ---- running ---- */
+
+static assay_status render_work(const assay_method *method, void *state, const assay_frame *frame,
+                                void *user, assay_ray_counts *counts)
+{
+    return method->render(state, frame, user, counts);
+}
+
+static assay_status render_frame(const assay_method *method, const assay_params *params,
+                                 const assay_frame *frame, assay_image **image_out,
+                                 assay_render_stats *stats)
+{
+    assay_film      *film   = NULL;
+    assay_image     *image  = NULL;
+    assay_ray_counts counts = {0};
+    const double     start  = assay_process_seconds();
+    assay_status     status =
+        assay_film_create(frame->context, frame->width, frame->height, frame->layers, &film);
+    if (status == ASSAY_OK) {
+        status = assay_run_method(method, params, frame, render_work, film, &counts);
+    }
+    if (status == ASSAY_OK) {
+        status = assay_film_develop(film, &image);
+    }
+    if (status == ASSAY_OK) {
+        status = describe(image, frame->world->scene, method, params, frame);
+    }
+    if (status == ASSAY_OK) {
+        stats->seconds_render = assay_process_seconds() - start;
+        assay_run_fill_stats(film, frame, &counts, stats);
+        *image_out = image;
+    } else {
+        assay_image_destroy(image);
+    }
+    assay_film_destroy(film);
+    return status;
+}
+
+assay_status assay_render(assay_scene *scene, const char *method_name, const assay_params *params,
+                          const assay_render_options *options, assay_image **image_out,
+                          assay_render_stats *stats_out)
+{
+    assay_context             *context  = scene->context;
+    const assay_render_options defaults = assay_render_options_default();
+    const assay_method        *method   = NULL;
+    assay_world               *world    = NULL;
+    assay_render_stats         stats    = {0};
+    if (!options) {
+        options = &defaults;
+    }
+    assay_frame  frame  = {.context = context,
+                           .width   = options->width,
+                           .height  = options->height,
+                           .seed    = options->seed};
+    assay_status status = assay_run_find(context, method_name, &method);
+    if (status == ASSAY_OK) {
+        status = check_options(context, options);
+    }
+    if (status == ASSAY_OK) {
+        status = assay_layers_parse(context, options->layers, &frame.layers);
+    }
+    if (status == ASSAY_OK) {
+        status = find_camera(scene, options->camera, &frame.camera);
+    }
+    if (status == ASSAY_OK) {
+        status = assay_run_build(scene, &world, &stats);
+    }
+    if (status == ASSAY_OK) {
+        frame.world = world;
+        status      = render_frame(method, params, &frame, image_out, &stats);
+    }
+    assay_world_destroy(world);
+    if (status == ASSAY_OK && stats_out) {
+        *stats_out = stats;
+    }
+    return status;
+}

@@ -1,0 +1,40 @@
+/* texture.h - image files into texels, and texels into values.
+ *
+ * The lookup itself, assay_texture_sample, is declared in scene/scene_data.h. */
+#ifndef ASSAY_SCENE_TEXTURE_H
+#define ASSAY_SCENE_TEXTURE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "assay/context.h"
+#include "scene/material.h"
+
+/* Largest side and pixel count of a texture; refused from its header, before anything is decoded.
+ */
+#define ASSAY_TEXTURE_MAX_SIDE 16384
+#define ASSAY_TEXTURE_MAX_PIXELS (1u << 27)
+
+/* Decodes a PNG or a JPEG file held in memory (told apart by content) to RGBA, 8 bits a component,
+ * or 16 where a PNG has 16.  Samples are taken as they are: gamma, chromaticity and ICC information
+ * is ignored, as glTF asks; alpha is not premultiplied; grey becomes R = G = B; no alpha is
+ * alpha 1. name is for messages ("images/3 (bricks.png)") and is copied into the image. Errors:
+ * FORMAT (malformed or cut short: never half an image), UNSUPPORTED (neither PNG nor JPEG, CMYK or
+ * arithmetic-coded or 12-bit JPEG), LIMIT, MEMORY; *image_out is then untouched. */
+assay_status assay_texture_image_decode(assay_context *context, const uint8_t *bytes, size_t count,
+                                        const char *name, assay_texture_image *image_out);
+
+/* Releases texels and name, and leaves zeros.  Legal on an image of zeros. */
+void assay_texture_image_release(assay_context *context, assay_texture_image *image);
+
+/* Fills ref->uv_matrix from offset, rotation (rad) and scale as KHR_texture_transform says:
+ * uv' = T R S uv.  Call it once after loading, also for references without the extension (offset 0,
+ * rotation 0, scale 1: the identity, exactly). */
+void assay_texture_ref_prepare(assay_texture_ref *ref);
+
+/* sRGB decoding of a component (IEC 61966-2-1), to [0, 1]: of 8 bits from a table, of 16 computed.
+ */
+double assay_srgb_decode8(uint8_t value);
+double assay_srgb_decode16(uint16_t value);
+
+#endif

@@ -1,0 +1,146 @@
+/* bsdf.c - dispatch over the models, and Lambert's law.
+ *
+ * Invariant: models see a frame in which wo is above the surface, both cosines at least
+ * ASSAY_HORIZON; what they return is finite; and the weight of a direction that is not specular is
+ * the quotient of the very value and density that assay_bsdf_evaluate gives for it. */
+#include "trace/bsdf.h"
+
+#include "core/numerics.h"
+#include "math/sampling.h"
+#include "trace/bsdf_models.h"
+
+/* Phong and Ward: a specular lobe that is added to the diffuse one. */
+static bool adds_specular(assay_bsdf_model model)
+{
+    return model == ASSAY_BSDF_PHONG || model == ASSAY_BSDF_WARD ||
+           model == ASSAY_BSDF_WARD_PUBLISHED;
+}
+
+assay_bsdf assay_bsdf_default(assay_bsdf_model model)
+{
+    return (assay_bsdf){
+        .model           = model,
+        .base_color      = rgb_grey(1.0),
+        .metallic        = 1.0,
+        .roughness       = 1.0,
+        .ior             = 1.5,
+        .specular_factor = 1.0,
+        .specular_color  = rgb_grey(adds_specular(model) ? 0.0 : 1.0),
+        .transmission    = 0.0,
+        .solid           = false,
+        .exponent        = 1.0,
+        .alpha_x         = 1.0,
+        .alpha_y         = 1.0,
+    };
+}
+
+static assay_vec3 flip(assay_vec3 w) { return vec3(w.x, w.y, -w.z); }
+
+static bool is_black(const assay_bsdf *bsdf)
+{
+    switch (bsdf->model) {
+    case ASSAY_BSDF_BLACK: return true;
+    case ASSAY_BSDF_LAMBERT: return rgb_is_black(bsdf->base_color);
+    case ASSAY_BSDF_METALLIC_ROUGHNESS: return false;
+    case ASSAY_BSDF_PHONG:
+    case ASSAY_BSDF_WARD:
+    case ASSAY_BSDF_WARD_PUBLISHED: break;
+    }
+    return rgb_is_black(bsdf->base_color) && rgb_is_black(bsdf->specular_color);
+}
+
+assay_bsdf_value assay_bsdf_evaluate(const assay_bsdf *bsdf, assay_vec3 wo, assay_vec3 wi)
+{
+    const assay_bsdf_value nothing = {{0.0, 0.0, 0.0}, 0.0};
+    const bool             back    = wo.z < 0.0;
+    const bool             general = bsdf->model == ASSAY_BSDF_METALLIC_ROUGHNESS;
+    if (back) {
+        wo = flip(wo);
+        wi = flip(wi);
+    }
+    if (!(wo.z >= ASSAY_HORIZON) || !(fabs(wi.z) >= ASSAY_HORIZON) || (wi.z < 0.0 && !general) ||
+        is_black(bsdf)) {
+        return nothing;
+    }
+    switch (bsdf->model) {
+    case ASSAY_BSDF_LAMBERT: {
+        const double pdf = wi.z * ASSAY_INV_PI;
+        return (assay_bsdf_value){rgb_scale(bsdf->base_color, pdf), pdf};
+    }
+    case ASSAY_BSDF_METALLIC_ROUGHNESS:
+        return assay_metallic_roughness_evaluate(bsdf, back, wo, wi);
+    case ASSAY_BSDF_PHONG: return assay_phong_evaluate(bsdf, wo, wi);
+    case ASSAY_BSDF_WARD:
+    case ASSAY_BSDF_WARD_PUBLISHED: return assay_ward_evaluate(bsdf, wo, wi);
+    case ASSAY_BSDF_BLACK: break;
+    }
+    return nothing;
+}
+
+/* Asks the model for a direction. */
+static bool choose(const assay_bsdf *bsdf, bool back, assay_vec3 wo, double u_lobe, double u1,
+                   double u2, assay_bsdf_choice *choice_out)
+{
+    choice_out->specular = false;
+    switch (bsdf->model) {
+    case ASSAY_BSDF_LAMBERT: choice_out->wi = assay_sample_cosine_hemisphere(u1, u2); return true;
+    case ASSAY_BSDF_METALLIC_ROUGHNESS:
+        return assay_metallic_roughness_choose(bsdf, back, wo, u_lobe, u1, u2, choice_out);
+    case ASSAY_BSDF_PHONG:
+        choice_out->wi = assay_phong_choose(bsdf, wo, u_lobe, u1, u2);
+        return true;
+    case ASSAY_BSDF_WARD:
+    case ASSAY_BSDF_WARD_PUBLISHED:
+        choice_out->wi = assay_ward_choose(bsdf, wo, u_lobe, u1, u2);
+        return true;
+    case ASSAY_BSDF_BLACK: break;
+    }
+    return false;
+}
+
+bool assay_bsdf_sample_direction(const assay_bsdf *bsdf, assay_vec3 wo, double u_lobe, double u1,
+                                 double u2, assay_bsdf_sample *sample_out)
+{
+    const bool       back = wo.z < 0.0;
+    const assay_vec3 up   = back ? flip(wo) : wo;
+    if (!(up.z >= ASSAY_HORIZON) || is_black(bsdf)) {
+        return false;
+    }
+    assay_bsdf_choice choice;
+    if (!choose(bsdf, back, up, u_lobe, u1, u2, &choice)) {
+        return false;
+    }
+    assay_bsdf_sample sample = {
+        .wi          = back ? flip(choice.wi) : choice.wi,
+        .specular    = choice.specular,
+        .transmitted = choice.wi.z < 0.0,
+    };
+    if (choice.specular) {
+        sample.weight = choice.weight;
+        sample.pdf    = choice.pdf;
+    } else {
+        const assay_bsdf_value f = assay_bsdf_evaluate(bsdf, wo, sample.wi);
+        if (!(f.pdf > 0.0)) {
+            return false;
+        }
+        sample.weight = rgb_scale(f.value, 1.0 / f.pdf);
+        sample.pdf    = f.pdf;
+    }
+    *sample_out = sample;
+    return isfinite(sample.pdf) && rgb_finite(sample.weight);
+}
+
+bool assay_bsdf_is_specular(const assay_bsdf *bsdf)
+{
+    return bsdf->model == ASSAY_BSDF_METALLIC_ROUGHNESS ? assay_metallic_roughness_is_specular(bsdf)
+                                                        : is_black(bsdf);
+}
+
+assay_rgb assay_bsdf_albedo(const assay_bsdf *bsdf)
+{
+    if (bsdf->model == ASSAY_BSDF_BLACK) {
+        return rgb_grey(0.0);
+    }
+    return adds_specular(bsdf->model) ? rgb_add(bsdf->base_color, bsdf->specular_color)
+                                      : bsdf->base_color;
+}

@@ -1,0 +1,286 @@
+/* bvh_kernel.h - the walk in float vectors, compiled once for each instruction set.
+ *
+ * The including file defines the vectors, and a bvh_kernel of `closest` and `occluded`:
+ *   v8, v8_load, v8_set1, v8_multiply_subtract, v8_min, v8_max, v8_store, v8_less_equal (8-bit mask)
+ *   v4, v4_load, v4_set1, v4_subtract, v4_multiply, v4_multiply_add (a b + c),
+ *   v4_multiply_subtract (a b - c), v4_negative_multiply_add (c - a b), v4_min, v4_max, v4_negate,
+ *   v4_less_equal (4-bit mask)
+ * Multiplying and adding may round once or twice: nothing here decides.  Boxes and filter only pass
+ * over what the decision would refuse (docs/exact-hits.md). */
+#include "trace/bvh_decision.h"
+
+static const double least_step   = 0x1p-40; /* of a direction against its largest component  */
+static const double range_low    = 0x1p-60; /* M outside is left to the double kernel, m     */
+static const double range_high   = 0x1p60;
+static const double slack        = 0x1p-22; /* of distances rounded to float                 */
+static const double least_slack  = 0x1p-100;
+static const double filter_floor = 0x1p-140; /* products may vanish by this much, m2         */
+
+/* The ray as the boxes see it: by tau = t |dz|, in the world's axes. */
+typedef struct {
+    float  inverse[3], near[3], far[3]; /* planes to tau: plane * inverse - near         */
+    size_t near_plane[3];               /* which of bvh_node.plane is met first          */
+    float  tau_after;
+} box_ray;
+
+/* The ray as the filter sees it: sheared, with the error's bound slope * extent + offset. */
+typedef struct {
+    float  o[3], sx, sy, slope, offset;
+    size_t axis[3]; /* in floats from a leaf corner's x */
+} filter_ray;
+
+typedef struct {
+    bvh_query  query;
+    box_ray    boxes;
+    filter_ray filter;
+    float      tau_best; /* not below that of the best hit */
+} walk_state;
+
+static inline float tau_above(double tau)
+{
+    return (float)(tau + (fabs(tau) * slack + least_slack));
+}
+
+static inline float tau_below(double tau)
+{
+    return (float)(tau - (fabs(tau) * slack + least_slack));
+}
+
+/* False where the range of float does not suffice. */
+static inline bool walk_start(walk_state *s, const assay_bvh *bvh, const assay_ray *ray)
+{
+    s->query               = bvh_query_start(bvh, ray);
+    const bvh_shear *shear = &s->query.shear;
+    const double     m     = shear->magnitude;
+    if (!(m >= range_low && m <= range_high)) {
+        return false;
+    }
+    const double sign   = copysign(1.0, shear->inverse_dz);
+    const double d[3]   = {shear->sx * sign, shear->sy * sign, sign};
+    const double margin = bvh->tuning.box_margin * m;
+    for (int k = 0; k < 3; k++) {
+        const uint32_t axis     = shear->axis[k];
+        const double   step     = fabs(d[k]) >= least_step ? d[k] : copysign(least_step, d[k]);
+        const float    inverse  = (float)(1.0 / step);
+        const double   origin   = shear->o[k] * (double)inverse;
+        const double   widening = margin * fabs((double)inverse);
+
+        s->boxes.inverse[axis]    = inverse;
+        s->boxes.near[axis]       = (float)(origin + widening);
+        s->boxes.far[axis]        = (float)(origin - widening);
+        s->boxes.near_plane[axis] = 2 * axis + (inverse < 0.0F);
+        s->filter.o[k]            = (float)shear->o[k];
+        s->filter.axis[k]         = axis * BVH_LEAF_SIZE;
+    }
+    const double error = bvh->tuning.filter_margin * m;
+    s->filter.sx       = (float)shear->sx;
+    s->filter.sy       = (float)shear->sy;
+    s->filter.slope    = (float)(6.0 * error);
+    s->filter.offset   = (float)(6.0 * error * error + filter_floor);
+    s->boxes.tau_after = tau_below(s->query.t_after * shear->abs_dz);
+    s->tau_best        = tau_above(s->query.best_t * shear->abs_dz);
+    return true;
+}
+
+/* ---- leaves ---- */
+
+typedef struct {
+    v4 x, y, z;
+} corners;
+
+static inline corners shear_corners(const filter_ray *r, const float *corner)
+{
+    const v4 x = v4_subtract(v4_load(corner + r->axis[0]), v4_set1(r->o[0]));
+    const v4 y = v4_subtract(v4_load(corner + r->axis[1]), v4_set1(r->o[1]));
+    const v4 z = v4_subtract(v4_load(corner + r->axis[2]), v4_set1(r->o[2]));
+    return (corners){v4_negative_multiply_add(v4_set1(r->sx), z, x),
+                     v4_negative_multiply_add(v4_set1(r->sy), z, y), z};
+}
+
+static inline v4 edge(corners p, corners q)
+{
+    return v4_multiply_subtract(p.x, q.y, v4_multiply(p.y, q.x));
+}
+
+/* Lanes whose triangle the decision might accept. */
+static inline unsigned filter_leaf(const filter_ray *r, const bvh_leaf *leaf)
+{
+    const corners  a = shear_corners(r, leaf->vertex[0][0]);
+    const corners  b = shear_corners(r, leaf->vertex[1][0]);
+    const corners  c = shear_corners(r, leaf->vertex[2][0]);
+    const v4       u = edge(c, b), v = edge(a, c), w = edge(b, a);
+    const v4       low   = v4_min(v4_min(u, v), w);
+    const v4       high  = v4_max(v4_max(u, v), w);
+    const v4       bound = v4_multiply_add(v4_set1(r->slope), v4_load(leaf->extent),
+                                           v4_set1(r->offset));
+    return v4_less_equal(v4_min(v4_negate(low), high), bound);
+}
+
+/* True when a triangle of the leaf became the best hit. */
+__attribute__((noinline)) static bool try_leaf(walk_state *s, const bvh_leaf *leaf)
+{
+    unsigned lanes = filter_leaf(&s->filter, leaf);
+    bool     found = false;
+    for (; lanes; lanes &= lanes - 1) {
+        const int lane = __builtin_ctz(lanes);
+        found |= bvh_query_try(&s->query, &leaf->vertex[0][0][lane], 3 * BVH_LEAF_SIZE,
+                               BVH_LEAF_SIZE, leaf->triangle[lane]);
+    }
+    if (found) {
+        s->tau_best = tau_above(s->query.best_t * s->query.shear.abs_dz);
+    }
+    return found;
+}
+
+/* ---- nodes ---- */
+
+/* The constants of box_ray, one vector each, to live in registers. */
+typedef struct {
+    v8     inverse[3], near[3], far[3], tau_after;
+    size_t near_plane[3];
+} box_vectors;
+
+static inline box_vectors box_vectors_of(const box_ray *r)
+{
+    box_vectors v;
+    for (int k = 0; k < 3; k++) {
+        v.inverse[k]    = v8_set1(r->inverse[k]);
+        v.near[k]       = v8_set1(r->near[k]);
+        v.far[k]        = v8_set1(r->far[k]);
+        v.near_plane[k] = r->near_plane[k];
+    }
+    v.tau_after = v8_set1(r->tau_after);
+    return v;
+}
+
+/* Mask of the children that the ray may meet before tau_best, and where it enters each. */
+static inline unsigned meet_children(const box_vectors *r, const bvh_node *node, v8 tau_best,
+                                     float *entry)
+{
+    v8 near[3], far[3];
+    for (int k = 0; k < 3; k++) {
+        const size_t plane = r->near_plane[k];
+        near[k] = v8_multiply_subtract(v8_load(node->plane[plane]), r->inverse[k], r->near[k]);
+        far[k]  = v8_multiply_subtract(v8_load(node->plane[plane ^ 1]), r->inverse[k], r->far[k]);
+    }
+    const v8 enter = v8_max(v8_max(near[0], near[1]), v8_max(near[2], r->tau_after));
+    const v8 leave = v8_min(v8_min(far[0], far[1]), v8_min(far[2], tau_best));
+    v8_store(entry, enter);
+    return v8_less_equal(enter, leave);
+}
+
+/* A child still to visit: bits of its entry above, its reference below. */
+static inline uint64_t stack_item(float entry, uint32_t reference)
+{
+    uint32_t bits;
+    __builtin_memcpy(&bits, &entry, sizeof bits);
+    return (uint64_t)bits << 32 | reference;
+}
+
+static inline float stack_entry(uint64_t item)
+{
+    const uint32_t bits = (uint32_t)(item >> 32);
+    float          entry;
+    __builtin_memcpy(&entry, &bits, sizeof entry);
+    return entry;
+}
+
+/* Pushes the children in `mask`, the nearest last; returns the new top. */
+static inline uint64_t *push_children(uint64_t *top, const bvh_node *node, const float *entry,
+                                      unsigned mask)
+{
+    uint64_t *first = top;
+    for (; mask; mask &= mask - 1) {
+        const int      i    = __builtin_ctz(mask);
+        const uint64_t item = stack_item(entry[i], node->child[i]);
+        uint64_t      *at   = top++;
+        for (; at > first && at[-1] < item; at--) {
+            *at = at[-1];
+        }
+        *at = item;
+    }
+    return top;
+}
+
+static bool closest(const assay_bvh *bvh, const assay_ray *ray, assay_hit *hit_out)
+{
+    walk_state s;
+    if (!walk_start(&s, bvh, ray)) {
+        return bvh_kernel_double.closest(bvh, ray, hit_out);
+    }
+    const box_vectors boxes    = box_vectors_of(&s.boxes);
+    v8                tau_best = v8_set1(s.tau_best);
+    uint64_t          stack[BVH_MAX_STACK];
+    uint64_t         *top       = stack;
+    uint32_t          reference = bvh->root;
+    for (;;) {
+        if (!(reference & BVH_LEAF_BIT)) {
+            const bvh_node *node = bvh_node_at(bvh, reference);
+            _Alignas(32) float entry[BVH_WIDTH];
+            unsigned mask = meet_children(&boxes, node, tau_best, entry);
+            if (mask) {
+                const int i = __builtin_ctz(mask);
+                reference   = node->child[i];
+                mask &= mask - 1;
+                if (!mask) {
+                    continue;
+                }
+                const int j = __builtin_ctz(mask);
+                mask &= mask - 1;
+                if (!mask) {
+                    const uint32_t other = node->child[j];
+                    if (entry[i] <= entry[j]) {
+                        *top++ = stack_item(entry[j], other);
+                    } else {
+                        *top++    = stack_item(entry[i], reference);
+                        reference = other;
+                    }
+                    continue;
+                }
+                mask |= 1U << i | 1U << j;
+                top       = push_children(top, node, entry, mask);
+                reference = (uint32_t)*--top;
+                continue;
+            }
+        } else if (try_leaf(&s, bvh_leaf_at(bvh, reference))) {
+            tau_best = v8_set1(s.tau_best);
+        }
+        uint64_t item;
+        do {
+            if (top == stack) {
+                return bvh_query_finish(&s.query, hit_out);
+            }
+            item = *--top;
+        } while (stack_entry(item) > s.tau_best);
+        reference = (uint32_t)item;
+    }
+}
+
+static bool occluded(const assay_bvh *bvh, const assay_ray *ray)
+{
+    walk_state s;
+    if (!walk_start(&s, bvh, ray)) {
+        return bvh_kernel_double.occluded(bvh, ray);
+    }
+    const box_vectors boxes    = box_vectors_of(&s.boxes);
+    const v8          tau_best = v8_set1(s.tau_best);
+    uint32_t          stack[BVH_MAX_STACK];
+    uint32_t         *top = stack;
+    *top++                = bvh->root;
+    while (top > stack) {
+        const uint32_t reference = *--top;
+        if (reference & BVH_LEAF_BIT) {
+            if (try_leaf(&s, bvh_leaf_at(bvh, reference))) {
+                return true;
+            }
+            continue;
+        }
+        const bvh_node *node = bvh_node_at(bvh, reference);
+        _Alignas(32) float entry[BVH_WIDTH];
+        unsigned mask = meet_children(&boxes, node, tau_best, entry);
+        for (; mask; mask &= mask - 1) {
+            *top++ = node->child[__builtin_ctz(mask)];
+        }
+    }
+    return false;
+}

@@ -1,0 +1,68 @@
+/* bvh_kernel_sse2.c - the walk for any x86-64: eight boxes in two vectors of four. */
+#include "trace/bvh_tree.h"
+
+#if defined(__x86_64__)
+#include <emmintrin.h>
+
+typedef __m128 v4;
+
+static inline v4 v4_load(const float *p)
+{
+    return _mm_load_ps(p);
+}
+static inline void v4_store(float *p, v4 a)
+{
+    _mm_store_ps(p, a);
+}
+static inline v4 v4_set1(float x)
+{
+    return _mm_set1_ps(x);
+}
+static inline v4 v4_subtract(v4 a, v4 b)
+{
+    return _mm_sub_ps(a, b);
+}
+static inline v4 v4_multiply(v4 a, v4 b)
+{
+    return _mm_mul_ps(a, b);
+}
+static inline v4 v4_multiply_add(v4 a, v4 b, v4 c)
+{
+    return _mm_add_ps(_mm_mul_ps(a, b), c);
+}
+static inline v4 v4_multiply_subtract(v4 a, v4 b, v4 c)
+{
+    return _mm_sub_ps(_mm_mul_ps(a, b), c);
+}
+static inline v4 v4_negative_multiply_add(v4 a, v4 b, v4 c)
+{
+    return _mm_sub_ps(c, _mm_mul_ps(a, b));
+}
+static inline v4 v4_min(v4 a, v4 b)
+{
+    return _mm_min_ps(a, b);
+}
+static inline v4 v4_max(v4 a, v4 b)
+{
+    return _mm_max_ps(a, b);
+}
+static inline v4 v4_negate(v4 a)
+{
+    return _mm_xor_ps(a, _mm_set1_ps(-0.0F));
+}
+static inline unsigned v4_less_equal(v4 a, v4 b)
+{
+    return (unsigned)_mm_movemask_ps(_mm_cmple_ps(a, b));
+}
+
+#include "trace/bvh_vector_pair.h"
+
+#include "trace/bvh_kernel.h"
+
+static bool supported(void)
+{
+    return true;
+}
+
+const bvh_kernel bvh_kernel_sse2 = {"sse2", supported, closest, occluded};
+#endif

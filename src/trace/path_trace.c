@@ -1,0 +1,237 @@
+/* path_trace.c - one path at a time.
+ *
+ * Invariant: before bounce b, `throughput` is the unbiased weight of the path so far, and `vertex`
+ * is where it stands.  A vertex always asks for the same number of random numbers whatever it
+ * finds, so that two paths from neighbouring points stay together (common random numbers for
+ * gradients). */
+#include "trace/path_trace.h"
+
+#include "core/numerics.h"
+
+/* Shadow rays end this much before the light, in parts of their length: far above rounding, so that
+ * an emitter does not hide itself. */
+static const double SHADOW_END = 1.0 - 0x1p-30;
+
+/* Roulette lets a path go on with at most this probability, so that a closed white furnace ends. */
+static const double ROULETTE_MAX = 0.95;
+
+typedef struct {
+    const assay_world         *world;
+    const assay_path_settings *settings;
+    assay_random              *random;
+    assay_ray_counts          *counts;
+    assay_path_light           light;
+    assay_rgb                  throughput;
+    const assay_material      *medium; /* the solid body that the path is inside of, or NULL */
+} path_walk;
+
+static void add_light(path_walk *walk, int bounce, assay_rgb radiance)
+{
+    assay_rgb *sum = bounce >= 2 ? &walk->light.indirect : &walk->light.direct;
+    *sum           = rgb_add(*sum, rgb_mul(walk->throughput, radiance));
+}
+
+/* Weight of a technique of density p against another of density q: the power heuristic with
+ * exponent 2 [veach95, eq. 9.12 of the thesis], without overflow. */
+static double power_weight(double p, double q)
+{
+    const double ratio = q / p;
+    return 1.0 / (1.0 + ratio * ratio);
+}
+
+/* Beer's law inside a solid body (KHR_materials_volume). */
+static assay_rgb absorption(const assay_material *medium, double distance)
+{
+    if (!medium || isinf(medium->attenuation_distance)) {
+        return rgb_grey(1.0);
+    }
+    const double lengths = distance / medium->attenuation_distance;
+    return rgb(assay_pow(medium->attenuation_color.r, lengths),
+               assay_pow(medium->attenuation_color.g, lengths),
+               assay_pow(medium->attenuation_color.b, lengths));
+}
+
+/* A direction must be on the same side for the shading and the geometric normal: what one of them
+ * calls reflection and the other transmission does not exist. */
+static bool sides_agree(const assay_vertex *vertex, assay_vec3 wi, bool transmitted)
+{
+    const bool crosses = (vec3_dot(wi, vertex->surface.ng) >= 0.0) != vertex->front;
+    return crosses == transmitted;
+}
+
+/* Light that arrives at the vertex straight from a light. */
+static void sample_light(path_walk *walk, const assay_vertex *vertex, int bounce)
+{
+    const double       u_choice   = assay_random_next(walk->random);
+    const double       u1         = assay_random_next(walk->random);
+    const double       u2         = assay_random_next(walk->random);
+    const bool         delta_only = walk->settings->estimator == ASSAY_ESTIMATOR_BSDF;
+    const assay_vec3   position   = vertex->surface.position;
+    assay_light_sample light;
+    if (assay_bsdf_is_specular(&vertex->bsdf) ||
+        !assay_lights_sample(walk->world->lights, position, delta_only, u_choice, u1, u2, &light)) {
+        return;
+    }
+    const assay_vec3 wi = frame3_to_local(&vertex->frame, light.direction);
+    if (!sides_agree(vertex, light.direction, wi.z * vertex->wo_local.z < 0.0)) {
+        return;
+    }
+    const assay_bsdf_value f = assay_bsdf_evaluate(&vertex->bsdf, vertex->wo_local, wi);
+    if (rgb_is_black(f.value)) {
+        return;
+    }
+    const assay_vec3 origin =
+        assay_world_offset(walk->world, position, vertex->surface.ng, light.direction);
+    const assay_vec3 along =
+        light.infinite ? light.direction : vec3_sub(vec3_add(position, light.to_light), origin);
+    const double clear = assay_world_transmittance(
+        walk->world, origin, along, light.infinite ? INFINITY : SHADOW_END, &walk->counts->shadow);
+    if (clear <= 0.0) {
+        return;
+    }
+    double weight = clear / light.pdf;
+    if (!light.delta && walk->settings->estimator == ASSAY_ESTIMATOR_MIS) {
+        weight *= power_weight(light.pdf, f.pdf);
+    }
+    assay_rgb radiance = rgb_scale(rgb_mul(f.value, light.radiance), weight);
+    if (walk->medium) {
+        radiance = rgb_mul(
+            radiance, absorption(walk->medium, light.infinite ? INFINITY : vec3_length(along)));
+    }
+    add_light(walk, bounce, radiance);
+}
+
+/* Weight of emission found by BSDF sampling, where light sampling would have had pdf_light. */
+static double emission_weight(const path_walk *walk, const assay_bsdf_sample *sample,
+                              double pdf_light)
+{
+    if (sample->specular || pdf_light == 0.0) {
+        return 1.0;
+    }
+    switch (walk->settings->estimator) {
+    case ASSAY_ESTIMATOR_NEE: return 0.0;
+    case ASSAY_ESTIMATOR_BSDF: return 1.0;
+    case ASSAY_ESTIMATOR_MIS: break;
+    }
+    return power_weight(sample->pdf, pdf_light);
+}
+
+/* Unlit surfaces show themselves to the camera and light nothing (docs/scenes.md). */
+static assay_rgb emission_of(const path_walk *walk, const assay_vertex *vertex)
+{
+    const assay_scene *scene = walk->world->scene;
+    if (scene->materials[vertex->surface.material].model == ASSAY_MATERIAL_UNLIT) {
+        return rgb_grey(0.0);
+    }
+    return assay_surface_emission(scene, &vertex->surface, vertex->front);
+}
+
+/* Ends dim paths at random; the survivors stand for them. */
+static bool survives_roulette(path_walk *walk, int bounce)
+{
+    const double u = assay_random_next(walk->random);
+    if (bounce <= walk->settings->roulette_depth) {
+        return true;
+    }
+    const double strength = rgb_max(walk->throughput);
+    const double chance   = strength < ROULETTE_MAX ? strength : ROULETTE_MAX;
+    if (!(u < chance)) {
+        return false;
+    }
+    walk->throughput = rgb_scale(walk->throughput, 1.0 / chance);
+    return true;
+}
+
+/* Goes from the vertex to the next one, adding what it finds there.  False where the path ends. */
+static bool follow(path_walk *walk, assay_vertex *vertex, int bounce)
+{
+    const double      u_lobe = assay_random_next(walk->random);
+    const double      u1     = assay_random_next(walk->random);
+    const double      u2     = assay_random_next(walk->random);
+    assay_bsdf_sample sample;
+    if (!assay_bsdf_sample_direction(&vertex->bsdf, vertex->wo_local, u_lobe, u1, u2, &sample)) {
+        return false;
+    }
+    const bool       last      = bounce == walk->settings->bounces;
+    const assay_vec3 direction = frame3_to_world(&vertex->frame, sample.wi);
+    if (!sides_agree(vertex, direction, sample.transmitted) ||
+        (last && !sample.specular && walk->settings->estimator == ASSAY_ESTIMATOR_NEE)) {
+        return false;
+    }
+    walk->throughput = rgb_mul(walk->throughput, sample.weight);
+    if (!survives_roulette(walk, bounce)) {
+        return false;
+    }
+    if (sample.transmitted && vertex->bsdf.solid) {
+        const bool enters = vec3_dot(direction, vertex->surface.ng) < 0.0;
+        walk->medium = enters ? &walk->world->scene->materials[vertex->surface.material] : NULL;
+    }
+    const assay_vec3 origin =
+        assay_world_offset(walk->world, vertex->surface.position, vertex->surface.ng, direction);
+    assay_hit hit;
+    if (!assay_world_closest(walk->world, origin, direction, false, walk->random,
+                             &walk->counts->scatter, &hit)) {
+        const double    pdf_light = assay_lights_pdf_infinite(walk->world->lights, direction);
+        const assay_rgb radiance  = assay_lights_infinite_radiance(walk->world->lights, direction);
+        walk->throughput          = rgb_mul(walk->throughput, absorption(walk->medium, INFINITY));
+        add_light(walk, bounce, rgb_scale(radiance, emission_weight(walk, &sample, pdf_light)));
+        return false;
+    }
+    walk->throughput = rgb_mul(walk->throughput, absorption(walk->medium, hit.t));
+    assay_vertex_at(walk->world, &hit, direction, vertex);
+    const assay_rgb emission = emission_of(walk, vertex);
+    if (!rgb_is_black(emission)) {
+        const double pdf_light = assay_lights_pdf_triangle(walk->world->lights, hit.triangle, hit.t,
+                                                           vec3_dot(direction, vertex->surface.ng));
+        add_light(walk, bounce, rgb_scale(emission, emission_weight(walk, &sample, pdf_light)));
+    }
+    return !last && !rgb_is_black(walk->throughput);
+}
+
+static void scatter(path_walk *walk, assay_vertex *vertex)
+{
+    for (int bounce = 1; bounce <= walk->settings->bounces; bounce++) {
+        if (walk->settings->estimator != ASSAY_ESTIMATOR_BSDF ||
+            walk->world->scene->punctual_count > 0) {
+            sample_light(walk, vertex, bounce);
+        }
+        if (!follow(walk, vertex, bounce)) {
+            return;
+        }
+    }
+}
+
+assay_path_light assay_path_scatter(const assay_world *world, const assay_path_settings *settings,
+                                    const assay_vertex *vertex, assay_random *random,
+                                    assay_ray_counts *counts)
+{
+    path_walk    walk = {.world      = world,
+                         .settings   = settings,
+                         .random     = random,
+                         .counts     = counts,
+                         .throughput = rgb_grey(1.0)};
+    assay_vertex at   = *vertex;
+    scatter(&walk, &at);
+    return walk.light;
+}
+
+assay_path_light assay_path_radiance(const assay_world *world, const assay_path_settings *settings,
+                                     assay_vec3 origin, assay_vec3 direction, assay_random *random,
+                                     assay_ray_counts *counts)
+{
+    path_walk walk = {.world      = world,
+                      .settings   = settings,
+                      .random     = random,
+                      .counts     = counts,
+                      .throughput = rgb_grey(1.0)};
+    assay_hit hit;
+    if (!assay_world_closest(world, origin, direction, true, random, &counts->camera, &hit)) {
+        add_light(&walk, 0, assay_lights_infinite_radiance(world->lights, direction));
+        return walk.light;
+    }
+    assay_vertex vertex;
+    assay_vertex_at(world, &hit, direction, &vertex);
+    add_light(&walk, 0, assay_surface_emission(world->scene, &vertex.surface, vertex.front));
+    scatter(&walk, &vertex);
+    return walk.light;
+}
