@@ -1,24 +1,25 @@
 # assay - `make help` lists the targets.
 
 VERSION := 0.1.0
+SOVERSION := 0
 PREFIX  ?= /usr/local
 DESTDIR ?=
+LIBDIR  ?= $(PREFIX)/lib
 BUILD   ?= build/release
 CC      ?= cc
 CXX     ?= c++
 AR      ?= ar
 OPT     ?= -O3 -g
 SAN     ?=
-PKG_CONFIG ?= pkg-config
 
 # What `make deps` installs (Debian 12).
-DEPS_BUILD := gcc g++ make pkg-config libembree-dev libopenexr-dev libtinygltf-dev libsleef-dev \
-              librandom123-dev libpng-dev libjpeg-dev libcjson-dev libmd-dev libgomp1
+DEPS_BUILD := gcc g++ make libembree-dev libopenexr-dev libtinygltf-dev libsleef-dev \
+              librandom123-dev libpng-dev libjpeg-dev libcjson-dev libmd-dev
 DEPS_TEST  := libcmocka-dev clang libomp-dev
+DEPS_LINT  := clang-format clang-tidy cppcheck
 
 # Same bits everywhere: no contraction, no fast math, no -march (docs/determinism.md).
-CPPFLAGS += -D_GNU_SOURCE -DASSAY_VERSION='"$(VERSION)"' -Iinclude -Isrc -isystem /usr/include/OpenEXR \
-            -isystem /usr/include/Imath
+CPPFLAGS += -D_GNU_SOURCE -DASSAY_VERSION='"$(VERSION)"' -Iinclude -Isrc
 WARN     := -Wall -Wextra -Wshadow -Wundef -Wvla -Wpointer-arith -Wcast-align
 CFLAGS   += -std=c11 $(OPT) $(WARN) -Wstrict-prototypes -Wmissing-prototypes -ffp-contract=off \
             -fvisibility=hidden -fPIC -fopenmp $(SAN)
@@ -29,18 +30,27 @@ LDLIBS   += -lembree3 -lOpenEXRCore -ltinygltf -lsleef -lpng -ljpeg -lcjson -lmd
 LIB_C   := $(filter-out src/cli/%,$(wildcard src/*/*.c src/*/*/*.c))
 LIB_CXX := $(wildcard src/*/*.cpp)
 CLI_C   := $(wildcard src/cli/*.c)
+GEN_C   := $(wildcard scenes/gen/*.c)
+BENCH_C := $(wildcard tests/bench/*.c)
+HELP_C  := $(wildcard tests/support/*.c)
+TEST_C  := $(wildcard tests/*/test_*.c)
 LIB_O   := $(LIB_C:%.c=$(BUILD)/%.o) $(LIB_CXX:%.cpp=$(BUILD)/%.o)
 CLI_O   := $(CLI_C:%.c=$(BUILD)/%.o)
-TESTS   := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/*/test_*.c))
-HELP_C  := $(wildcard tests/support/*.c)
+GEN_O   := $(GEN_C:%.c=$(BUILD)/%.o)
 HELP_O  := $(HELP_C:%.c=$(BUILD)/%.o)
+TESTS   := $(TEST_C:%.c=$(BUILD)/%)
+BENCHES := $(BENCH_C:%.c=$(BUILD)/%)
+OURS    := $(wildcard include/assay/*.h src/*/*.[ch] src/*/*/*.[ch] src/*/*.cpp scenes/gen/*.[ch] \
+             tests/*/*.[ch])
 
-.PHONY: all help deps demo test clean
-all: $(BUILD)/assay ## build the command and the library
+.PHONY: all help deps deps-test demo test install uninstall scenes layers format lint bench \
+        check-sanitize check-arm64 fuzz clean
+all: $(BUILD)/assay ## build the command
 
 help: ## list the targets
-	@sed -n 's/^\([a-z0-9-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 18
+	@sed -n 's/^\([a-z0-9-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 18
 
+# ---- building ----
 $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@
@@ -53,15 +63,116 @@ $(BUILD)/libassay.a: $(LIB_O)
 	@rm -f $@
 	$(AR) rcs $@ $^
 
+$(BUILD)/libassay.so: $(LIB_O)
+	$(CC) -shared -Wl,-soname,libassay.so.$(SOVERSION) $(LDFLAGS) $^ $(LDLIBS) -o $@
+
 $(BUILD)/assay: $(CLI_O) $(BUILD)/libassay.a
 	$(CC) $(LDFLAGS) $^ $(LDLIBS) -o $@
 
+# ---- what must be installed: asked for only where it is missing ----
+define install_missing
+missing=; for p in $(1); do dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q ' installed' \
+  || missing="$$missing $$p"; done; \
+if [ -z "$$missing" ]; then exit 0; fi; \
+if ! command -v apt-get >/dev/null; then \
+  echo "This is not Debian. Install what these packages hold, then try again:$$missing" >&2; exit 1; fi; \
+sudo=; if [ "$$(id -u)" != 0 ]; then sudo=sudo; command -v sudo >/dev/null || { \
+  echo "Not root and no sudo. Have these packages installed:$$missing" >&2; exit 1; }; fi; \
+echo "Installing:$$missing"; $$sudo apt-get update -q && \
+$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -qy --no-install-recommends $$missing
+endef
+
+deps: ## install what building needs (Debian)
+	@$(call install_missing,$(DEPS_BUILD))
+
+deps-test: ## install what the tests need (Debian)
+	@$(call install_missing,$(DEPS_BUILD) $(DEPS_TEST))
+
+# ---- the two commands ----
+DEMO := build/demo
+demo: deps ## build, render our Cornell box, write EXR and PNG
+	@$(MAKE) --no-print-directory -s -j$$(nproc) all
+	@mkdir -p $(DEMO)
+	@$(BUILD)/assay render scenes/cornell-box/cornell-box.gltf --method path --size 400x400 \
+	   --spp 64 -o $(DEMO)/cornell-box.exr --png $(DEMO)/cornell-box.png \
+	   --stats $(DEMO)/cornell-box.json
+	@echo "The Cornell box, path traced with 64 samples a pixel and all bounces:"
+	@echo "  $(DEMO)/cornell-box.png   to look at"
+	@echo "  $(DEMO)/cornell-box.exr   linear radiance, variance, G-buffer, irradiance: all layers"
+	@echo "  $(DEMO)/cornell-box.json  rays, seconds, memory"
+	@echo "Next: $(BUILD)/assay render --help"
+
+test: deps-test ## build and run all tests
+	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(TESTS) $(BUILD)/make_scenes
+	@ASSAY_BIN=$(BUILD)/assay tests/tools/run.sh $(TESTS) $(wildcard tests/*/test_*.sh)
+
 # ---- tests ----
-$(BUILD)/tests/%: $(BUILD)/tests/%.o $(HELP_O) $(BUILD)/libassay.a
+$(BUILD)/tests/bench/%: $(BUILD)/tests/bench/%.o $(BUILD)/libassay.a
+	$(CC) $(LDFLAGS) $^ $(LDLIBS) -o $@
+
+$(BUILD)/tests/%: $(BUILD)/tests/%.o $(HELP_O) $(filter-out %/main.o,$(GEN_O)) $(BUILD)/libassay.a
 	$(CC) $(LDFLAGS) $^ -lcmocka $(LDLIBS) -o $@
+
+check-sanitize: deps-test ## the tests under ASan and UBSan
+	@$(MAKE) --no-print-directory test BUILD=build/sanitize CC=clang CXX=clang++ OPT="-O1 -g" \
+	   SAN="-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer"
+
+check-arm64: ## the same bits on aarch64, under qemu-user
+	@tests/tools/check_arm64.sh
+
+bench: ## ratios measured inside one run
+	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(BENCHES)
+	@for b in $(BENCHES); do echo "== $${b##*/}"; $$b || exit 1; done
+
+fuzz: ## fuzz the loaders for an hour (clang)
+	@tests/tools/fuzz.sh
+
+# ---- scenes ----
+$(BUILD)/make_scenes: $(GEN_O) $(BUILD)/libassay.a
+	$(CC) $(LDFLAGS) $^ $(LDLIBS) -o $@
+
+scenes: $(BUILD)/make_scenes ## write our own scenes again
+	$(BUILD)/make_scenes scenes
+
+# ---- order in the house ----
+layers: ## check that every include follows src/layers.txt
+	@awk -f tests/tools/layers.awk src/layers.txt $(filter src/%,$(OURS))
+
+format: ## format all sources
+	clang-format -i $(OURS)
+
+lint: layers ## clang-format, clang-tidy, cppcheck: all clean
+	@$(call install_missing,$(DEPS_LINT))
+	clang-format --dry-run -Werror $(OURS)
+	clang-tidy --quiet $(LIB_C) $(CLI_C) -- $(CPPFLAGS) -std=c11 -fopenmp 2>&1 | \
+	  awk '/warnings? generated|Suppressed|Use -header-filter/ { next } { print; bad = 1 } END { exit bad }'
+	cppcheck --quiet --error-exitcode=1 --std=c11 --enable=warning,performance,portability \
+	  --inline-suppr --suppress=missingIncludeSystem -Iinclude -Isrc -DASSAY_VERSION='"x"' \
+	  $(LIB_C) $(CLI_C)
+
+# ---- installing ----
+install: all $(BUILD)/libassay.so ## install to $(DESTDIR)$(PREFIX)
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(LIBDIR)/pkgconfig \
+	  $(DESTDIR)$(PREFIX)/include/assay $(DESTDIR)$(PREFIX)/share/man/man1
+	install -m 755 $(BUILD)/assay $(DESTDIR)$(PREFIX)/bin/assay
+	install -m 644 $(BUILD)/libassay.a $(DESTDIR)$(LIBDIR)/libassay.a
+	install -m 755 $(BUILD)/libassay.so $(DESTDIR)$(LIBDIR)/libassay.so.$(SOVERSION)
+	ln -sf libassay.so.$(SOVERSION) $(DESTDIR)$(LIBDIR)/libassay.so
+	install -m 644 include/assay/*.h $(DESTDIR)$(PREFIX)/include/assay
+	install -m 644 docs/assay.1 $(DESTDIR)$(PREFIX)/share/man/man1/assay.1
+	printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$${prefix}/include' '' \
+	  'Name: assay' 'Description: reference renderer and test oracle for light caching' \
+	  'Version: $(VERSION)' 'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lassay' \
+	  'Libs.private: -fopenmp $(LDLIBS)' > $(DESTDIR)$(LIBDIR)/pkgconfig/assay.pc
+
+uninstall: ## remove what install put there
+	rm -rf $(DESTDIR)$(PREFIX)/include/assay
+	rm -f $(DESTDIR)$(PREFIX)/bin/assay $(DESTDIR)$(PREFIX)/share/man/man1/assay.1 \
+	  $(DESTDIR)$(LIBDIR)/libassay.a $(DESTDIR)$(LIBDIR)/libassay.so \
+	  $(DESTDIR)$(LIBDIR)/libassay.so.$(SOVERSION) $(DESTDIR)$(LIBDIR)/pkgconfig/assay.pc
 
 clean: ## remove everything that was built
 	rm -rf build
 
--include $(LIB_O:.o=.d) $(CLI_O:.o=.d) $(TESTS:=.d) $(HELP_O:.o=.d)
+-include $(LIB_O:.o=.d) $(CLI_O:.o=.d) $(GEN_O:.o=.d) $(HELP_O:.o=.d) $(TESTS:=.d) $(BENCHES:=.d)
 .SECONDARY:

@@ -8,7 +8,7 @@
  * are taken out of its decompressed chunk here, since that is where HALF becomes FLOAT and every
  * bit counts.  Its memory is zeroed, so that a chunk that decompresses to too little cannot show
  * what was there before. */
-#include <openexr.h>
+#include <OpenEXR/openexr.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

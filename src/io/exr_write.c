@@ -2,7 +2,7 @@
  *
  * Invariant: the library never sees a file; what it writes goes to an atomic file, whose own error
  * is the one that is reported.  32-bit samples are kept bit for bit. */
-#include <openexr.h>
+#include <OpenEXR/openexr.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -52,9 +52,10 @@ static inline assay_vec3 assay_sample_cone(double height, double u1, double u2)
     return assay_direction_about_z(1.0 - below, sqrt(below * (2.0 - below)), u2);
 }
 
+/* The rim counts in, with the rounding of z. */
 static inline double assay_cone_pdf(double height, double z)
 {
-    return 1.0 - z <= height ? 0.5 * ASSAY_INV_PI / height : 0.0;
+    return 1.0 - z <= height + 0x1p-52 ? 0.5 * ASSAY_INV_PI / height : 0.0;
 }
 
 /* A point in the plane, or two barycentric coordinates. */

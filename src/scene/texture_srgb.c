@@ -9,7 +9,7 @@
 #include "scene/texture.h"
 
 /* clang-format off */
-static const double decoded[256] = {
+const double assay_srgb_decoded[256] = {
     0x0.0p+0, 0x1.3e45677c176f7p-12, 0x1.3e45677c176f7p-11, 0x1.dd681b3a23272p-11,
     0x1.3e45677c176f7p-10, 0x1.8dd6c15b1d4b4p-10, 0x1.dd681b3a23272p-10, 0x1.167cba8c94818p-9,
     0x1.3e45677c176f7p-9, 0x1.660e146b9a5d5p-9, 0x1.8dd6c15b1d4b4p-9, 0x1.b6a31b5259c94p-9,

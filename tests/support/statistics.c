@@ -54,15 +54,9 @@ double statistics_gamma_q(double a, double x)
     return x < a + 1.0 ? 1.0 - front * gamma_p_series(a, x) : front * gamma_q_fraction(a, x);
 }
 
-double statistics_chi_square_tail(double x, int k)
-{
-    return statistics_gamma_q(0.5 * k, 0.5 * x);
-}
+double statistics_chi_square_tail(double x, int k) { return statistics_gamma_q(0.5 * k, 0.5 * x); }
 
-double statistics_sidak(double level, int count)
-{
-    return -expm1(log1p(-level) / count);
-}
+double statistics_sidak(double level, int count) { return -expm1(log1p(-level) / count); }
 
 /* ---- grids ---- */
 
@@ -94,6 +88,11 @@ static int insert_edge(double *edges, int cells, double x)
     return cells + 1;
 }
 
+void statistics_grid_cut(statistics_grid *grid, double z)
+{
+    grid->rows = insert_edge(grid->z, grid->rows, z);
+}
+
 void statistics_grid_focus(statistics_grid *grid, assay_vec3 direction, double width)
 {
     static const double steps[] = {-30.0, -12.0, -5.0, -2.0, -0.7, 0.0, 0.7, 2.0, 5.0, 12.0, 30.0};
@@ -107,8 +106,8 @@ void statistics_grid_focus(statistics_grid *grid, assay_vec3 direction, double w
         }
         const double turn = steps[i] * width / fmax(sine, width);
         if (fabs(turn) < ASSAY_PI) {
-            grid->columns = insert_edge(grid->phi, grid->columns,
-                                        remainder(phi + turn, ASSAY_TWO_PI));
+            grid->columns =
+                insert_edge(grid->phi, grid->columns, remainder(phi + turn, ASSAY_TWO_PI));
         }
     }
 }
@@ -133,13 +132,12 @@ static double rule(const integrand *f, cell c)
                                           0.32607257743127307, 0.17392742256872693};
     double              sum            = 0.0;
     for (int i = 0; i < NODES; i++) {
-        const double z = c.z0 + (c.z1 - c.z0) * nodes[i];
-        const double r = sqrt((1.0 - z) * (1.0 + z));
+        const double z   = c.z0 + (c.z1 - c.z0) * nodes[i];
+        const double r   = sqrt((1.0 - z) * (1.0 + z));
         double       row = 0.0;
         for (int j = 0; j < NODES; j++) {
             const double phi = c.phi0 + (c.phi1 - c.phi0) * nodes[j];
-            row += weights[j] *
-                   f->density(f->context, (assay_vec3){r * cos(phi), r * sin(phi), z});
+            row += weights[j] * f->density(f->context, (assay_vec3){r * cos(phi), r * sin(phi), z});
         }
         sum += weights[i] * row;
     }
@@ -221,8 +219,8 @@ static bool count_draws(const statistics_grid *grid, const integrand *f, statist
             continue;
         }
         const double p = f->density(f->context, w);
-        possible       = possible && isfinite(p) && p > 0.0 && w.z >= grid->z[0] &&
-                   w.z <= grid->z[grid->rows];
+        possible =
+            possible && isfinite(p) && p > 0.0 && w.z >= grid->z[0] && w.z <= grid->z[grid->rows];
         const int row    = cell_of(grid->z, grid->rows, w.z);
         const int column = cell_of(grid->phi, grid->columns, atan2(w.y, w.x));
         observed[row * grid->columns + column] += 1.0;
@@ -230,38 +228,41 @@ static bool count_draws(const statistics_grid *grid, const integrand *f, statist
     return possible;
 }
 
-/* Pearson's statistic over bins; those with small expectations share bins. */
-static void compare(const double *expected, const double *observed, int bins,
-                    statistics_verdict *verdict)
+/* Pearson's statistic over bins; neighbours with small expectations share one.  What is then left
+ * over, too little for a bin, has a Poisson test of its own, whose probability is returned:
+ * P(X >= n) = P(n, mean). */
+static double compare(const double *expected, const double *observed, int bins,
+                      statistics_verdict *verdict)
 {
-    double pool_expected = 0.0, pool_observed = 0.0, sum = 0.0;
+    double e = 0.0, o = 0.0, sum = 0.0;
     int    used = 0;
     for (int i = 0; i < bins; i++) {
-        double e = expected[i], o = observed[i];
-        if (e < 5.0) {
-            pool_expected += e;
-            pool_observed += o;
-            if (pool_expected < 5.0) {
-                continue;
-            }
-            e             = pool_expected;
-            o             = pool_observed;
-            pool_expected = pool_observed = 0.0;
-        }
-        sum += (o - e) * (o - e) / e;
-        used++;
-    }
-    /* What is left in the pool is too little for a bin; if it was drawn often, that shows. */
-    if (pool_observed > 0.0) {
-        const double e = fmax(pool_expected, 1e-3);
-        if (pool_observed > 25.0) {
-            sum += (pool_observed - e) * (pool_observed - e) / e;
+        if (expected[i] >= 5.0) {
+            sum += (observed[i] - expected[i]) * (observed[i] - expected[i]) / expected[i];
             used++;
+            continue;
+        }
+        e += expected[i];
+        o += observed[i];
+        if (e >= 5.0) {
+            sum += (o - e) * (o - e) / e;
+            used++;
+            e = o = 0.0;
         }
     }
     verdict->chi_square = sum;
     verdict->degrees    = used - 1;
-    verdict->p = used > 1 ? statistics_chi_square_tail(sum, used - 1) : 1.0;
+    verdict->p_shape    = used > 1 ? statistics_chi_square_tail(sum, used - 1) : 1.0;
+    return o > 0.0 ? 1.0 - statistics_gamma_q(o, fmax(e, 1e-6)) : 1.0;
+}
+
+/* Two-sided, normal; where the variance is too small for that, the bin of the chi-square test has
+ * to do. */
+static double mass_tail(double mass, double drawn, int count)
+{
+    const double variance = mass * (1.0 - mass) / count;
+    return variance * count * (double)count > 25.0 ? erfc(fabs(drawn - mass) / sqrt(2.0 * variance))
+                                                   : 1.0;
 }
 
 statistics_verdict statistics_test_sampler(const statistics_grid *grid, statistics_density density,
@@ -275,18 +276,19 @@ statistics_verdict statistics_test_sampler(const statistics_grid *grid, statisti
     if (!expected) {
         return verdict;
     }
-    double *observed  = expected + cells + 1;
-    verdict.mass      = statistics_integrate(grid, density, context, f.tolerance, expected);
-    bool possible     = count_draws(grid, &f, sampler, count, seed, observed);
-    verdict.drawn     = 1.0 - observed[cells] / count;
-    expected[cells]   = fmax(1.0 - verdict.mass, 0.0);
+    double *observed = expected + cells + 1;
+    verdict.mass     = statistics_integrate(grid, density, context, f.tolerance, expected);
+    bool possible    = count_draws(grid, &f, sampler, count, seed, observed);
+    verdict.drawn    = 1.0 - observed[cells] / count;
+    expected[cells]  = fmax(1.0 - verdict.mass, 0.0);
     for (int i = 0; i <= cells; i++) {
         possible    = possible && expected[i] >= 0.0;
         expected[i] = expected[i] * count;
     }
-    possible = possible && verdict.mass <= 1.0 + 1e-4;
-    compare(expected, observed, cells + 1, &verdict);
-    verdict.p = possible ? verdict.p : 0.0;
+    possible          = possible && verdict.mass <= 1.0 + 1e-4;
+    const double rest = compare(expected, observed, cells + 1, &verdict);
+    const double mass = mass_tail(verdict.mass, verdict.drawn, count);
+    verdict.p         = possible ? fmin(1.0, 3.0 * fmin(verdict.p_shape, fmin(rest, mass))) : 0.0;
     free(expected);
     return verdict;
 }

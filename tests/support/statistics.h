@@ -36,13 +36,16 @@ typedef struct {
 /* Cells of equal area between two heights; phi from -pi. */
 statistics_grid statistics_grid_between(double z_min, double z_max, int rows, int columns);
 
-/* Adds edges about a direction, down to `width` radians: without them a narrow lobe can fall between
- * the nodes of the quadrature. */
+/* Adds edges about a direction, down to `width` radians: without them a narrow lobe can fall
+ * between the nodes of the quadrature. */
 void statistics_grid_focus(statistics_grid *grid, assay_vec3 direction, double width);
 
+/* Adds an edge at a height, where the density jumps. */
+void statistics_grid_cut(statistics_grid *grid, double z);
+
 /* Integral of the density over the grid, 1/sr times sr, by Gauss-Legendre rules of 4 x 4 nodes,
- * halved where a cell and its quarters differ by more than `tolerance` or 1e-9 of the value, down to
- * 2^-9 of the cell.  cells_out (rows * columns, row by row) may be NULL. */
+ * halved where a cell and its quarters differ by more than `tolerance` or 1e-9 of the value, down
+ * to 2^-9 of the cell.  cells_out (rows * columns, row by row) may be NULL. */
 double statistics_integrate(const statistics_grid *grid, statistics_density density,
                             const void *context, double tolerance, double *cells_out);
 
@@ -53,18 +56,21 @@ typedef bool (*statistics_sampler)(const void *context, const double u[3],
                                    assay_vec3 *direction_out);
 
 typedef struct {
-    double p;             /* of data as far off as these or farther, if the density is right; 0
-                             where the density is impossible                                     */
-    double mass;          /* integral of the density                                             */
-    double drawn;         /* share of draws that gave a direction                                */
+    double p;       /* of data as far off as these or farther, if the density is right; 0 where
+                       the density is impossible                                            */
+    double p_shape; /* of the chi-square statistic alone                                    */
+    double mass;    /* integral of the density                                              */
+    double drawn;   /* share of draws that gave a direction                                 */
     double chi_square;
     int    degrees;
 } statistics_verdict;
 
-/* Draws `count` times.  Draws that give nothing are a bin of their own, with what the density's
- * integral leaves to 1.  Bins of fewer than 5 expected are pooled.  p is 0 where that integral
- * exceeds 1 by more than 1e-4, where the density is negative or not finite, or where it is zero at
- * a direction that was drawn. */
+/* Draws `count` times, at least 1000.  Draws that give nothing are a bin of their own, with what
+ * the density's integral leaves to 1.  Bins of fewer than 5 expected are pooled; what is left of
+ * the pool, and the share of draws that gave a direction, are tested apart, and p is the least of
+ * the three probabilities times 3 (Bonferroni's correction).  p is 0 where the integral exceeds 1
+ * by more than 1e-4, where the density is negative or not finite, or where it is zero at a
+ * direction that was drawn. */
 statistics_verdict statistics_test_sampler(const statistics_grid *grid, statistics_density density,
                                            statistics_sampler sampler, const void *context,
                                            int count, uint64_t seed);
@@ -77,7 +83,7 @@ typedef struct {
 } statistics_mean;
 
 /* Welford's update. */
-void   statistics_mean_add(statistics_mean *mean, double x);
+void statistics_mean_add(statistics_mean *mean, double x);
 /* Standard error of the mean. */
 double statistics_mean_error(const statistics_mean *mean);
 

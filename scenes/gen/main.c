@@ -1,4 +1,4 @@
-/* make_scenes.c - writes every scene of own_scenes.h into a folder.
+/* main.c - writes every scene of own_scenes.h into a folder.
  *
  *     make_scenes DIRECTORY
  *
