@@ -19,7 +19,7 @@ DEPS_TEST  := libcmocka-dev clang libomp-dev
 DEPS_LINT  := clang-format clang-tidy cppcheck
 
 # Same bits everywhere: no contraction, no fast math, no -march (docs/determinism.md).
-CPPFLAGS += -D_GNU_SOURCE -DASSAY_VERSION='"$(VERSION)"' -Iinclude -Isrc
+CPPFLAGS += -D_GNU_SOURCE -DASSAY_VERSION='"$(VERSION)"' -Iinclude -Isrc -Itests
 WARN     := -Wall -Wextra -Wshadow -Wundef -Wvla -Wpointer-arith -Wcast-align
 CFLAGS   += -std=c11 $(OPT) $(WARN) -Wstrict-prototypes -Wmissing-prototypes -ffp-contract=off \
             -fvisibility=hidden -fPIC -fopenmp $(SAN)

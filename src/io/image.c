@@ -9,6 +9,7 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/hash.h"
+#include "io/compare_channels.h"
 #include "io/image_data.h"
 #include "io/read_file.h"
 
@@ -60,6 +61,8 @@ void assay_image_destroy(assay_image *image)
     assay_release(context, image->attributes);
     assay_release(context, image);
 }
+
+assay_context *assay_image_context(const assay_image *image) { return image->context; }
 
 int assay_image_width(const assay_image *image) { return image->width; }
 

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/alloc.h"
+#include "core/context.h"
 #include "scene/gltf_loader.h"
 
 static uint32_t component_bytes(assay_gltf_component component)
@@ -222,12 +224,11 @@ static assay_status read_elements(assay_gltf_loader *loader, uint32_t accessor,
                                   const assay_gltf_use *use, const uint32_t *chosen, uint32_t count,
                                   const target *to)
 {
-    const assay_gltf_accessor *a     = &loader->document.accessors[accessor];
-    const uint8_t             *bytes = NULL;
-    uint64_t                   length;
-    assay_status               status =
-        assay_gltf_count_decoded(loader, (uint64_t)count * to->stride + a->sparse_count, 4);
-    if (status == ASSAY_OK && a->view != ASSAY_NONE) {
+    const assay_gltf_accessor *a      = &loader->document.accessors[accessor];
+    const uint8_t             *bytes  = NULL;
+    uint64_t                   length = 0;
+    assay_status               status = ASSAY_OK;
+    if (a->view != ASSAY_NONE) {
         status = assay_gltf_view_bytes(loader, a->view, &bytes, &length);
     }
     for (uint32_t i = 0; bytes && i < count && status == ASSAY_OK; i++) {
@@ -241,18 +242,41 @@ static assay_status read_elements(assay_gltf_loader *loader, uint32_t accessor,
     return status;
 }
 
+/* Room for `count` elements `stride` numbers of 4 bytes apart, where there is none yet. */
+static assay_status make_room(assay_gltf_loader *loader, uint32_t accessor, uint32_t count,
+                              uint32_t stride, void **values)
+{
+    const uint64_t     sparse = loader->document.accessors[accessor].sparse_count;
+    const assay_status status =
+        assay_gltf_count_decoded(loader, (uint64_t)count * stride + sparse, 4);
+    if (status == ASSAY_OK && !*values) {
+        *values = assay_allocate(loader->context, (size_t)count * stride, 4);
+        return *values ? ASSAY_OK : assay_fail_memory(loader->context, "the values of an accessor");
+    }
+    return status;
+}
+
 assay_status assay_gltf_read_floats(assay_gltf_loader *loader, uint32_t accessor,
                                     const assay_gltf_use *use, const uint32_t *chosen,
-                                    uint32_t count, uint32_t stride, float *values_out)
+                                    uint32_t count, uint32_t stride, uint32_t first, float **values)
 {
-    const target to = {.floats = values_out, .stride = stride};
+    const assay_status status = make_room(loader, accessor, count, stride, (void **)values);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    const target to = {.floats = *values + first, .stride = stride};
     return read_elements(loader, accessor, use, chosen, count, &to);
 }
 
 assay_status assay_gltf_read_whole(assay_gltf_loader *loader, uint32_t accessor,
                                    const assay_gltf_use *use, const uint32_t *chosen,
-                                   uint32_t count, uint32_t stride, uint32_t *values_out)
+                                   uint32_t count, uint32_t stride, uint32_t first,
+                                   uint32_t **values)
 {
-    const target to = {.whole = values_out, .stride = stride};
+    const assay_status status = make_room(loader, accessor, count, stride, (void **)values);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    const target to = {.whole = *values + first, .stride = stride};
     return read_elements(loader, accessor, use, chosen, count, &to);
 }

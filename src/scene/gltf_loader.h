@@ -109,17 +109,21 @@ typedef struct {
 assay_status assay_gltf_check_accessor(assay_gltf_loader *loader, uint32_t accessor,
                                        const assay_gltf_use *use);
 
-/* Reads elements (all of them, or those that `chosen` lists in ascending order), integers
- * normalized where the accessor says so, `stride` floats apart, sparse ones put in.  The accessor
- * was checked.  Errors: FORMAT (NaN, infinite, sparse indices), LIMIT. */
+/* Reads `count` elements: the first ones, or those that `chosen` lists in ascending order, integers
+ * normalized where the accessor says so, sparse ones put in.  Element i starts at
+ * (*values)[i * stride + first].  Where *values is NULL it is allocated, zeros, count * stride; it
+ * is the caller's, on errors too.  The accessor was checked, and has the elements.
+ * Errors: FORMAT (NaN, infinite, sparse indices), LIMIT, MEMORY. */
 assay_status assay_gltf_read_floats(assay_gltf_loader *loader, uint32_t accessor,
                                     const assay_gltf_use *use, const uint32_t *chosen,
-                                    uint32_t count, uint32_t stride, float *values_out);
+                                    uint32_t count, uint32_t stride, uint32_t first,
+                                    float **values);
 
 /* The same for unsigned integers. */
 assay_status assay_gltf_read_whole(assay_gltf_loader *loader, uint32_t accessor,
                                    const assay_gltf_use *use, const uint32_t *chosen,
-                                   uint32_t count, uint32_t stride, uint32_t *values_out);
+                                   uint32_t count, uint32_t stride, uint32_t first,
+                                   uint32_t **values);
 
 /* ---- the parts of a scene, in the order of their loading ---- */
 

@@ -77,8 +77,6 @@ const double assay_srgb_decoded[256] = {
 };
 /* clang-format on */
 
-double assay_srgb_decode8(uint8_t value) { return decoded[value]; }
-
 double assay_srgb_decode16(uint16_t value)
 {
     const double c = value / 65535.0;

@@ -75,7 +75,6 @@ typedef struct {
     bsdf_case       c;
     setting         s;
     statistics_grid grid;
-    bool            last;
 } test_point;
 
 static bool point_at(int index, test_point *point)

@@ -1,0 +1,155 @@
+/* heat_map.c - where two images differ, as colours.
+ *
+ * The scale is a path through CIELAB (white D65) whose lightness L* grows evenly from 0 to 100, so
+ * that equal steps look equal and the order survives in grey:
+ *
+ *     L* = 100 t,  hue = 300 + 155 t degrees,  chroma = 260 t (1 - t)
+ *
+ * black, violet, red, orange, yellow, white.  The chroma is a little below the largest that the
+ * sRGB gamut allows along that path (4 * 67.9 t (1 - t), reached at t = 0.35). */
+#include <math.h>
+#include <string.h>
+
+#include "assay/compare.h"
+#include "core/alloc.h"
+#include "core/context.h"
+#include "core/numerics.h"
+#include "io/compare_channels.h"
+#include "io/heat_map.h"
+
+/* Inverse of CIELAB's f. */
+static double from_lab(double t)
+{
+    const double knee = 6.0 / 29.0;
+    return t > knee ? t * t * t : 3.0 * knee * knee * (t - 4.0 / 29.0);
+}
+
+static double clamp_unit(double x) { return !(x > 0.0) ? 0.0 : x < 1.0 ? x : 1.0; }
+
+assay_rgb assay_heat_color(double t)
+{
+    const double       at     = clamp_unit(t);
+    const assay_sincos hue    = assay_sincos_turns((300.0 + 155.0 * at) / 360.0);
+    const double       chroma = 260.0 * at * (1.0 - at);
+    const double       fy     = (100.0 * at + 16.0) / 116.0;
+    const double       x      = 0.95047 * from_lab(fy + chroma * hue.cos / 500.0);
+    const double       y      = from_lab(fy);
+    const double       z      = 1.08883 * from_lab(fy - chroma * hue.sin / 200.0);
+    /* XYZ to linear sRGB (IEC 61966-2-1). */
+    return (assay_rgb){clamp_unit(3.2404542 * x - 1.5371385 * y - 0.4985314 * z),
+                       clamp_unit(-0.9692660 * x + 1.8760108 * y + 0.0415560 * z),
+                       clamp_unit(0.0556434 * x - 0.2040259 * y + 1.0572252 * z)};
+}
+
+/* The channels to look at: pairs of a and b. */
+typedef struct {
+    assay_channel *pairs;
+    double        *floors; /* 1e-2 |mean of a| */
+    int            count;
+} channel_pairs;
+
+static void add_pair(channel_pairs *list, const assay_image *a, const assay_image *b,
+                     const char *name)
+{
+    assay_channel *pair = list->pairs + 2 * list->count;
+    if (assay_image_find_channel(a, name, &pair[0]) &&
+        assay_image_find_channel(b, name, &pair[1]) && pair[0].type == ASSAY_CHANNEL_FLOAT &&
+        pair[1].type == ASSAY_CHANNEL_FLOAT) {
+        list->floors[list->count] =
+            1e-2 * fabs(assay_channel_mean(&pair[0], &pair[1], assay_image_pixels(a)));
+        list->count++;
+    }
+}
+
+static assay_status choose_pairs(const assay_image *a, const assay_image *b, channel_pairs *list)
+{
+    static const char *const colors[3] = {"R", "G", "B"};
+    assay_context           *context   = assay_image_context(a);
+    const int                channels  = assay_image_channel_count(a);
+    list->pairs  = assay_allocate(context, (size_t)channels + 4, 2 * sizeof *list->pairs);
+    list->floors = assay_allocate(context, (size_t)channels + 4, sizeof *list->floors);
+    if (!list->pairs || !list->floors) {
+        return assay_fail_memory(context, "a heat map");
+    }
+    for (int c = 0; c < 3; c++) {
+        add_pair(list, a, b, colors[c]);
+    }
+    if (list->count < 3) {
+        list->count = 0;
+        for (int i = 0; i < channels; i++) {
+            add_pair(list, a, b, assay_image_channel_at(a, i).name);
+        }
+    }
+    return list->count ? ASSAY_OK
+                       : assay_fail(context, ASSAY_ERR_ARGUMENT,
+                                    "the images have no float channel in common");
+}
+
+/* Relative difference; not finite in one image only counts as beyond every scale. */
+static double pixel_error(const channel_pairs *list, size_t pixel)
+{
+    double sum = 0.0;
+    for (int i = 0; i < list->count; i++) {
+        const double a = assay_channel_value(&list->pairs[2 * i], pixel);
+        const double b = assay_channel_value(&list->pairs[2 * i + 1], pixel);
+        if (isfinite(a) && isfinite(b)) {
+            const double d = fabs(b - a);
+            sum += d == 0.0 ? 0.0 : d / (fabs(a) + list->floors[i]);
+        } else if (!(isnan(a) && isnan(b)) && a != b) {
+            return INFINITY;
+        }
+    }
+    return sum / list->count;
+}
+
+static assay_status draw(const channel_pairs *list, double full_scale, assay_image *map)
+{
+    static const char *const names[3] = {"R", "G", "B"};
+    assay_channel            out[3];
+    for (int c = 0; c < 3; c++) {
+        const assay_status status =
+            assay_image_add_channel(map, names[c], ASSAY_CHANNEL_FLOAT, &out[c]);
+        if (status != ASSAY_OK) {
+            return status;
+        }
+    }
+    for (size_t i = 0; i < assay_image_pixels(map); i++) {
+        const assay_rgb color = assay_heat_color(pixel_error(list, i) / full_scale);
+        out[0].data.f32[i]    = (float)color.r;
+        out[1].data.f32[i]    = (float)color.g;
+        out[2].data.f32[i]    = (float)color.b;
+    }
+    return ASSAY_OK;
+}
+
+assay_status assay_image_heat_map(const assay_image *a, const assay_image *b, double full_scale,
+                                  assay_image **map_out)
+{
+    assay_context *context = assay_image_context(a);
+    if (!(full_scale > 0.0) || isinf(full_scale)) {
+        return assay_fail(context, ASSAY_ERR_ARGUMENT,
+                          "the full scale of a heat map is %g; it must be finite and > 0",
+                          full_scale);
+    }
+    assay_status status = assay_images_check_sizes(a, b);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    channel_pairs list = {0};
+    assay_image  *map  = NULL;
+    status             = choose_pairs(a, b, &list);
+    if (status == ASSAY_OK) {
+        status = assay_image_create(context, assay_image_width(a), assay_image_height(a), &map);
+    }
+    if (status == ASSAY_OK) {
+        status = draw(&list, full_scale, map);
+    }
+    assay_release(context, list.pairs);
+    assay_release(context, list.floors);
+    if (status != ASSAY_OK) {
+        assay_image_destroy(map);
+        return status;
+    }
+    *map_out = map;
+    return ASSAY_OK;
+}
