@@ -9,6 +9,7 @@
 #include "assay/scene.h"
 #include "math/vec.h"
 #include "scene/material.h"
+#include "scene/transform.h"
 
 /* ---- document ---- */
 
@@ -29,7 +30,7 @@ typedef struct {
     float              *uv[2];     /* 2 a vertex, or NULL                                      */
     float              *colors;    /* 4 a vertex, linear RGBA (COLOR_0), or NULL               */
     uint16_t           *joints;    /* 4 * joint_sets a vertex, or NULL                         */
-    float              *weights;   /* likewise                                                 */
+    float              *weights;   /* likewise, >= 0, sum > 0; divided by the sum when used    */
     uint32_t            joint_sets;
     uint32_t            material;  /* index into the scene's materials (the default material of
                                       glTF is its last)                                         */
@@ -55,12 +56,15 @@ typedef struct {
     double    translation[3], rotation[4] /* x y z w */, scale[3];
     double   *weights;           /* morph weights of this node, or NULL               */
     uint32_t  weight_count;
+    uint32_t  first_weight;      /* of the current ones, in the scene's morph_weights */
+    uint32_t  target_count;      /* morph targets of its mesh                         */
 } assay_node;
 
 typedef struct {
     uint32_t *joints; /* nodes */
-    double   *inverse_bind; /* 16 a joint, column-major */
+    double   *inverse_bind; /* 16 a joint, column-major; NULL: identities */
     uint32_t  joint_count;
+    uint32_t  first_matrix; /* of the current ones, in the scene's joint_matrices */
 } assay_skin;
 
 typedef enum {
@@ -169,7 +173,21 @@ struct assay_scene {
     uint32_t warning_count;
     size_t   warning_capacity;
 
+    char   **extensions; /* extensionsUsed of the file, the first few */
+    uint32_t extension_count;
+    bool     warnings_lost; /* memory was refused for one */
+
     assay_environment *environment; /* NULL: the constant options.background */
+
+    uint32_t *node_order;     /* all nodes, parents before children         */
+    uint32_t  instance_count; /* nodes in the scene with a mesh             */
+    bool      is_static;      /* no animation: every time looks the same    */
+
+    /* scratch of an evaluation */
+    assay_pose   *poses;          /* node_count: animated T, R, S            */
+    assay_affine *node_worlds;    /* node_count                              */
+    double       *morph_weights;  /* first_weight of each node and on        */
+    assay_affine *joint_matrices; /* first_matrix of each skin and on        */
 
     /* at `time` */
     double                time;

@@ -34,7 +34,9 @@ void assay_texture_ref_prepare(assay_texture_ref *ref);
 
 /* sRGB decoding of a component (IEC 61966-2-1), to [0, 1]: of 8 bits from a table, of 16 computed.
  */
-double assay_srgb_decode8(uint8_t value);
-double assay_srgb_decode16(uint16_t value);
+extern const double assay_srgb_decoded[256];
+
+static inline double assay_srgb_decode8(uint8_t value) { return assay_srgb_decoded[value]; }
+double               assay_srgb_decode16(uint16_t value);
 
 #endif

@@ -11,12 +11,12 @@
  * cosines finite, and what is lost of an albedo is of the order of its square. */
 #define ASSAY_HORIZON 1e-12
 
-/* What a model chooses: a direction, and for a specular lobe also weight and probability. */
+/* What a model chooses: a direction, and how much it scatters there: f |wi.z| and its density or,
+ * from a specular lobe, what the lobe scatters and its probability. */
 typedef struct {
-    assay_vec3 wi;
-    bool       specular;
-    assay_rgb  weight; /* specular only */
-    double     pdf;    /* specular only */
+    assay_vec3       wi;
+    bool             specular;
+    assay_bsdf_value f;
 } assay_bsdf_choice;
 
 assay_bsdf_value assay_metallic_roughness_evaluate(const assay_bsdf *bsdf, bool back, assay_vec3 wo,
