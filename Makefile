@@ -104,7 +104,10 @@ demo: deps ## build, render our Cornell box, write EXR and PNG
 
 test: deps-test ## build and run all tests
 	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(TESTS) $(BUILD)/make_scenes
-	@ASSAY_BIN=$(BUILD)/assay tests/tools/run.sh $(TESTS) $(wildcard tests/*/test_*.sh)
+	@ASSAY_BIN=$(BUILD)/assay BUILD=$(BUILD) MUTANT_COMPILE="$(CC) $(filter-out -DASSAY_VERSION%,$(CPPFLAGS)) $(CFLAGS)" \
+	   MUTANT_LINK="$(CC) $(LDFLAGS)" \
+	   MUTANT_LIBS="$(HELP_O) $(filter-out %/main.o,$(GEN_O)) $(BUILD)/libassay.a -lcmocka $(LDLIBS)" \
+	   tests/tools/run.sh $(wildcard tests/*/test_*.sh) $(TESTS)
 
 # ---- tests ----
 $(BUILD)/tests/bench/%: $(BUILD)/tests/bench/%.o $(BUILD)/libassay.a

@@ -69,7 +69,7 @@ void arcade_solid(solid_mesh *mesh, const storey_shape *storey, int bays)
                                       .segments  = 20,
                                       .bay       = BAY,
                                       .radius    = ARCH_RADIUS,
-                                      .margin    = 0.35,
+                                      .margin    = 0.32,
                                       .springing = storey->springing,
                                       .top       = storey->top,
                                       .thickness = WALL});

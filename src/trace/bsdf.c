@@ -1,8 +1,8 @@
 /* bsdf.c - dispatch over the models, and Lambert's law.
  *
  * Invariant: models see a frame in which wo is above the surface, both cosines at least
- * ASSAY_HORIZON; what they return is finite; and the weight of a direction that is not specular is
- * the quotient of the very value and density that assay_bsdf_evaluate gives for it. */
+ * ASSAY_HORIZON; what they return is finite; and a weight is the quotient of the very value and
+ * density that assay_bsdf_evaluate gives for a direction that is not from a specular lobe. */
 #include "trace/bsdf.h"
 
 #include "core/numerics.h"
@@ -77,57 +77,47 @@ assay_bsdf_value assay_bsdf_evaluate(const assay_bsdf *bsdf, assay_vec3 wo, assa
     return nothing;
 }
 
-/* Asks the model for a direction. */
+/* Asks the model for a direction and what it scatters there. */
 static bool choose(const assay_bsdf *bsdf, bool back, assay_vec3 wo, double u_lobe, double u1,
                    double u2, assay_bsdf_choice *choice_out)
 {
-    choice_out->specular = false;
+    assay_vec3 wi;
     switch (bsdf->model) {
-    case ASSAY_BSDF_LAMBERT: choice_out->wi = assay_sample_cosine_hemisphere(u1, u2); return true;
     case ASSAY_BSDF_METALLIC_ROUGHNESS:
         return assay_metallic_roughness_choose(bsdf, back, wo, u_lobe, u1, u2, choice_out);
-    case ASSAY_BSDF_PHONG:
-        choice_out->wi = assay_phong_choose(bsdf, wo, u_lobe, u1, u2);
-        return true;
+    case ASSAY_BSDF_LAMBERT: wi = assay_sample_cosine_hemisphere(u1, u2); break;
+    case ASSAY_BSDF_PHONG: wi = assay_phong_choose(bsdf, wo, u_lobe, u1, u2); break;
     case ASSAY_BSDF_WARD:
-    case ASSAY_BSDF_WARD_PUBLISHED:
-        choice_out->wi = assay_ward_choose(bsdf, wo, u_lobe, u1, u2);
-        return true;
-    case ASSAY_BSDF_BLACK: break;
+    case ASSAY_BSDF_WARD_PUBLISHED: wi = assay_ward_choose(bsdf, wo, u_lobe, u1, u2); break;
+    case ASSAY_BSDF_BLACK:
+    default: return false;
     }
-    return false;
+    *choice_out = (assay_bsdf_choice){wi, false, assay_bsdf_evaluate(bsdf, wo, wi)};
+    return true;
 }
 
 bool assay_bsdf_sample_direction(const assay_bsdf *bsdf, assay_vec3 wo, double u_lobe, double u1,
                                  double u2, assay_bsdf_sample *sample_out)
 {
-    const bool       back = wo.z < 0.0;
-    const assay_vec3 up   = back ? flip(wo) : wo;
-    if (!(up.z >= ASSAY_HORIZON) || is_black(bsdf)) {
-        return false;
-    }
+    const bool        back = wo.z < 0.0;
+    const assay_vec3  up   = back ? flip(wo) : wo;
     assay_bsdf_choice choice;
-    if (!choose(bsdf, back, up, u_lobe, u1, u2, &choice)) {
+    if (!(up.z >= ASSAY_HORIZON) || is_black(bsdf) ||
+        !choose(bsdf, back, up, u_lobe, u1, u2, &choice) || !(choice.f.pdf > 0.0)) {
         return false;
     }
-    assay_bsdf_sample sample = {
+    const assay_rgb weight = rgb_scale(choice.f.value, 1.0 / choice.f.pdf);
+    if (!isfinite(choice.f.pdf) || !rgb_finite(weight)) {
+        return false;
+    }
+    *sample_out = (assay_bsdf_sample){
         .wi          = back ? flip(choice.wi) : choice.wi,
+        .weight      = weight,
+        .pdf         = choice.f.pdf,
         .specular    = choice.specular,
         .transmitted = choice.wi.z < 0.0,
     };
-    if (choice.specular) {
-        sample.weight = choice.weight;
-        sample.pdf    = choice.pdf;
-    } else {
-        const assay_bsdf_value f = assay_bsdf_evaluate(bsdf, wo, sample.wi);
-        if (!(f.pdf > 0.0)) {
-            return false;
-        }
-        sample.weight = rgb_scale(f.value, 1.0 / f.pdf);
-        sample.pdf    = f.pdf;
-    }
-    *sample_out = sample;
-    return isfinite(sample.pdf) && rgb_finite(sample.weight);
+    return true;
 }
 
 bool assay_bsdf_is_specular(const assay_bsdf *bsdf)

@@ -113,6 +113,8 @@ static void set_probabilities(lobes *l, bool back, double cos_o)
     l->p_facet            = facets * scale;
 }
 
+static double at_most_one(double x) { return x < 1.0 ? x : 1.0; }
+
 static void base_of(const assay_bsdf *bsdf, lobes *l)
 {
     const double dielectric = 1.0 - bsdf->metallic;
@@ -121,9 +123,9 @@ static void base_of(const assay_bsdf *bsdf, lobes *l)
     l->alpha                = bsdf->roughness * bsdf->roughness;
     l->metallic             = bsdf->metallic;
     l->base_color           = bsdf->base_color;
-    l->f0                   = rgb(fmin(f0 * bsdf->specular_color.r, 1.0) * factor,
-                                  fmin(f0 * bsdf->specular_color.g, 1.0) * factor,
-                                  fmin(f0 * bsdf->specular_color.b, 1.0) * factor);
+    l->f0                   = rgb(at_most_one(f0 * bsdf->specular_color.r) * factor,
+                                  at_most_one(f0 * bsdf->specular_color.g) * factor,
+                                  at_most_one(f0 * bsdf->specular_color.b) * factor);
     l->f90                  = factor;
     l->diffuse              = rgb_scale(bsdf->base_color, dielectric * (1.0 - bsdf->transmission));
     l->through              = rgb_scale(bsdf->base_color, dielectric * bsdf->transmission);
@@ -200,24 +202,22 @@ static assay_bsdf_value refraction(const lobes *l, assay_vec3 wo, assay_vec3 wi)
     };
 }
 
+static assay_bsdf_value evaluate(const lobes *l, assay_vec3 wo, assay_vec3 wi)
+{
+    if (wi.z > 0.0) {
+        return reflection(l, wo, wi);
+    }
+    if (l->smooth || l->matched || !l->transmits) {
+        return (assay_bsdf_value){{0.0, 0.0, 0.0}, 0.0};
+    }
+    return l->refracts ? refraction(l, wo, wi) : thin_transmission(l, wo, wi);
+}
+
 assay_bsdf_value assay_metallic_roughness_evaluate(const assay_bsdf *bsdf, bool back, assay_vec3 wo,
                                                    assay_vec3 wi)
 {
     const lobes l = lobes_of(bsdf, back, wo.z);
-    if (wi.z > 0.0) {
-        return reflection(&l, wo, wi);
-    }
-    if (l.smooth || l.matched || !l.transmits) {
-        return (assay_bsdf_value){{0.0, 0.0, 0.0}, 0.0};
-    }
-    return l.refracts ? refraction(&l, wo, wi) : thin_transmission(&l, wo, wi);
-}
-
-static void set_specular(assay_bsdf_choice *choice, assay_rgb scattered, double probability)
-{
-    choice->specular = true;
-    choice->weight   = rgb_scale(scattered, 1.0 / probability);
-    choice->pdf      = probability;
+    return evaluate(&l, wo, wi);
 }
 
 /* Reflects at or passes a microfacet; u chooses. */
@@ -236,11 +236,34 @@ static bool choose_at_facet(const lobes *l, assay_vec3 wo, assay_vec3 h, double 
         const assay_vec3 mirrored = assay_reflect(wo, h, c);
         choice->wi                = vec3(mirrored.x, mirrored.y, -mirrored.z);
     }
+    choice->specular = l->smooth;
     if (l->smooth) {
-        set_specular(choice, passes ? rgb_scale(l->through, f.pass / squared) : f.reflect,
-                     l->p_facet * (passes ? 1.0 - f.p_reflect : f.p_reflect));
+        choice->f.value = passes ? rgb_scale(l->through, f.pass / squared) : f.reflect;
+        choice->f.pdf   = l->p_facet * (passes ? 1.0 - f.p_reflect : f.p_reflect);
     }
     return passes == (choice->wi.z < 0.0);
+}
+
+/* Draws a lobe and from it a direction; f is set where the lobe is specular. */
+static bool choose(const lobes *l, assay_vec3 wo, double u_lobe, double u1, double u2,
+                   assay_bsdf_choice *choice)
+{
+    choice->specular = false;
+    if (u_lobe < l->p_diffuse) {
+        choice->wi = assay_sample_cosine_hemisphere(u1, u2);
+        return true;
+    }
+    if (u_lobe < l->p_diffuse + l->p_straight) {
+        *choice = (assay_bsdf_choice){vec3_negate(wo), true, {l->through, l->p_straight}};
+        return true;
+    }
+    if (l->p_facet == 0.0) {
+        return false;
+    }
+    const double     u = (u_lobe - l->p_diffuse - l->p_straight) / l->p_facet;
+    const assay_vec3 h =
+        l->smooth ? vec3(0.0, 0.0, 1.0) : assay_ggx_sample_visible(l->alpha, wo, u1, u2);
+    return choose_at_facet(l, wo, h, u, choice);
 }
 
 bool assay_metallic_roughness_choose(const assay_bsdf *bsdf, bool back, assay_vec3 wo,
@@ -248,22 +271,13 @@ bool assay_metallic_roughness_choose(const assay_bsdf *bsdf, bool back, assay_ve
                                      assay_bsdf_choice *choice_out)
 {
     const lobes l = lobes_of(bsdf, back, wo.z);
-    if (u_lobe < l.p_diffuse) {
-        choice_out->wi = assay_sample_cosine_hemisphere(u1, u2);
-        return true;
-    }
-    if (u_lobe < l.p_diffuse + l.p_straight) {
-        choice_out->wi = vec3_negate(wo);
-        set_specular(choice_out, l.through, l.p_straight);
-        return true;
-    }
-    if (l.p_facet == 0.0) {
+    if (!choose(&l, wo, u_lobe, u1, u2, choice_out) || !(fabs(choice_out->wi.z) >= ASSAY_HORIZON)) {
         return false;
     }
-    const double     u = (u_lobe - l.p_diffuse - l.p_straight) / l.p_facet;
-    const assay_vec3 h =
-        l.smooth ? vec3(0.0, 0.0, 1.0) : assay_ggx_sample_visible(l.alpha, wo, u1, u2);
-    return choose_at_facet(&l, wo, h, u, choice_out);
+    if (!choice_out->specular) {
+        choice_out->f = evaluate(&l, wo, choice_out->wi);
+    }
+    return true;
 }
 
 bool assay_metallic_roughness_is_specular(const assay_bsdf *bsdf)

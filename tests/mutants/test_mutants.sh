@@ -1,0 +1,29 @@
+#!/bin/sh
+# Breaks the source on purpose, one line of mutants.txt at a time, and expects the named test to fail.
+# Prints TAP.  MUTANT_COMPILE, MUTANT_LINK and BUILD come from the Makefile.
+set -u
+: "${MUTANT_COMPILE:?run this through make test}" "${MUTANT_LINK:?}" "${BUILD:?}"
+folder=$(mktemp -d) || exit 1
+trap 'rm -rf "$folder"' EXIT
+number=0
+while IFS= read -r line; do
+    case $line in "#"* | "") continue ;; esac
+    number=$((number + 1))
+    file=$(echo "$line" | sed 's/ ; .*//')
+    change=$(echo "$line" | sed 's/^[^;]* ; //; s/ ; [^;]*$//')
+    test=$(echo "$line" | sed 's/.* ; //')
+    mutant=$folder/$(basename "$file")
+    sed "$change" "$file" > "$mutant"
+    if cmp -s "$file" "$mutant"; then
+        echo "not ok $number - $file: the expression changes nothing: $change"
+    elif ! $MUTANT_COMPILE -I"$(dirname "$file")" -w -c "$mutant" -o "$folder/mutant.o" ||
+         ! $MUTANT_LINK "$folder/mutant.o" "$BUILD/tests/$test.o" -o "$folder/mutant.bin" \
+               $MUTANT_LIBS; then
+        echo "not ok $number - $file: the mutant does not build: $change"
+    elif timeout 300 "$folder/mutant.bin" > /dev/null 2>&1; then
+        echo "not ok $number - $file: $test does not see: $change"
+    else
+        echo "ok $number - $test sees $(basename "$file"): $change"
+    fi
+done < tests/mutants/mutants.txt
+echo "1..$number"
