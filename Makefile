@@ -19,13 +19,13 @@ DEPS_TEST  := libcmocka-dev clang libomp-dev
 DEPS_LINT  := clang-format clang-tidy cppcheck
 
 # Same bits everywhere: no contraction, no fast math, no -march (docs/determinism.md).
-CPPFLAGS += -D_GNU_SOURCE -DASSAY_VERSION='"$(VERSION)"' -Iinclude -Isrc -Itests
+override CPPFLAGS += -D_GNU_SOURCE -DASSAY_VERSION='"$(VERSION)"' -Iinclude -Isrc -Itests
 WARN     := -Wall -Wextra -Wshadow -Wundef -Wvla -Wpointer-arith -Wcast-align
-CFLAGS   += -std=c11 $(OPT) $(WARN) -Wstrict-prototypes -Wmissing-prototypes -ffp-contract=off \
+override CFLAGS += -std=c11 $(OPT) $(WARN) -Wstrict-prototypes -Wmissing-prototypes -ffp-contract=off \
             -fvisibility=hidden -fPIC -fopenmp $(SAN)
-CXXFLAGS += -std=c++17 $(OPT) $(WARN) -ffp-contract=off -fvisibility=hidden -fPIC $(SAN)
-LDFLAGS  += -fopenmp $(SAN)
-LDLIBS   += -lembree3 -lOpenEXRCore -ltinygltf -lsleef -lpng -ljpeg -lcjson -lmd -lm -lstdc++
+override CXXFLAGS += -std=c++17 $(OPT) $(WARN) -ffp-contract=off -fvisibility=hidden -fPIC $(SAN)
+override LDFLAGS += -fopenmp $(SAN)
+override LDLIBS += -lembree3 -lOpenEXRCore -ltinygltf -lsleef -lpng -ljpeg -lcjson -lmd -lm -lstdc++
 
 LIB_C   := $(filter-out src/cli/%,$(wildcard src/*/*.c src/*/*/*.c))
 LIB_CXX := $(wildcard src/*/*.cpp)

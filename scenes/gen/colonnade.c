@@ -187,8 +187,8 @@ static void add_floor(hall *h)
 
 /* ---- light ---- */
 
-/* The sky's rectangle ends where the sun's rays to the court begin: at its height they have come
- * from (SKY_HEIGHT - 11.6) * 12/11 m further east. */
+/* The sky ends in the east where the sun's rays to the court begin: those that pass the western edge
+ * of the roof, at x = -9.25 m and 10.6 m up, come down from x = 5.3 m at the sky's height. */
 #define SKY_HEIGHT 24.0
 
 static void add_light(hall *h)
@@ -198,13 +198,13 @@ static void add_light(hall *h)
     sky.emissive[0]             = 0.7;
     sky.emissive[1]             = 0.85;
     sky.emissive[2]             = 1.0;
-    sky.emissive_strength       = 5.0;
+    sky.emissive_strength       = 2.5;
     solid_mesh mesh;
     mesh_init(&mesh, true);
-    mesh_quad(&mesh, vec3(-40.0, SKY_HEIGHT, -16.0), vec3(2.5, SKY_HEIGHT, -16.0),
-              vec3(2.5, SKY_HEIGHT, 16.0), vec3(-40.0, SKY_HEIGHT, 16.0));
+    mesh_quad(&mesh, vec3(-38.0, SKY_HEIGHT, -12.0), vec3(5.0, SKY_HEIGHT, -12.0),
+              vec3(5.0, SKY_HEIGHT, 12.0), vec3(-38.0, SKY_HEIGHT, 12.0));
     gltf_add_mesh_node(h->d, "sky", finish(h, "sky", &mesh, gltf_add_material(h->d, sky)), origin);
-    gltf_add_sun(h->d, "sun", warm, 30.0, vec3(-12.0, -11.0, 4.0));
+    gltf_add_sun(h->d, "sun", warm, 10.0, vec3(-12.0, -11.0, 4.0));
 }
 
 static void add_materials(hall *h)
@@ -243,7 +243,7 @@ gltf_document *make_colonnade(void)
     add_cloths(&h);
     add_light(&h);
     gltf_add_perspective(h.d, "atrium", 1.05, vec3(9.25, 1.75, 0.75), vec3(-9.0, 4.5, -0.5));
-    gltf_add_perspective(h.d, "lower_arcade", 1.0, vec3(12.5, 1.65, 5.75), vec3(-10.0, 1.9, 5.25));
-    gltf_add_perspective(h.d, "upper_gallery", 1.1, vec3(11.5, 7.25, -5.25), vec3(-4.0, 5.0, 2.0));
+    gltf_add_perspective(h.d, "lower_arcade", 1.0, vec3(8.5, 1.65, 6.0), vec3(-10.0, 1.75, 4.5));
+    gltf_add_perspective(h.d, "upper_gallery", 1.1, vec3(12.5, 7.25, 0.75), vec3(-6.0, 5.0, -1.25));
     return h.d;
 }

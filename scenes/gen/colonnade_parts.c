@@ -56,7 +56,7 @@ void column_solid(solid_mesh *mesh, const storey_shape *storey)
     };
     mesh_init(mesh, false);
     box(mesh, 1.5 * r, 1.5 * r, -SINK, 0.12);
-    mesh_revolve(mesh, profile, COUNT(profile), 32);
+    mesh_revolve(mesh, profile, COUNT(profile), 28);
     box(mesh, 0.36, 0.36, height - 0.12, height + 0.02);
 }
 
@@ -133,7 +133,7 @@ void door_solid(solid_mesh *mesh)
 
 /* ---- small turned things ---- */
 
-/* Eight balusters of a bay, between the rails. */
+/* Seven balusters of a bay, between the rails. */
 void baluster_row(solid_mesh *mesh)
 {
     static const profile_point profile[] = {
@@ -143,11 +143,11 @@ void baluster_row(solid_mesh *mesh)
         {0.055, 0.88, false, 0.0}, {0.0, 0.88, false, 0.0},
     };
     mesh_init(mesh, false);
-    for (int i = 0; i < 8; i++) {
+    for (int i = 0; i < 7; i++) {
         const size_t first = mesh->vertex_count;
         mesh_revolve(mesh, profile, COUNT(profile), 8);
         for (size_t v = first; v < mesh->vertex_count; v++) {
-            mesh->positions[v].x += 0.23 * (i - 3.5);
+            mesh->positions[v].x += 0.26 * (i - 3);
         }
     }
 }
@@ -205,7 +205,7 @@ void banner_sheet(solid_mesh *mesh, int style)
     static const banner_shape shapes[3] = {
         {3.6, 1.5, 3.0, 0.06}, {3.2, 1.3, 2.5, 0.07}, {4.0, 1.4, 3.5, 0.05}};
     mesh_init(mesh, false);
-    mesh_sheet(mesh, 24, 16, banner_at, &shapes[style]);
+    mesh_sheet(mesh, 16, 12, banner_at, &shapes[style]);
 }
 
 void floor_tiles(solid_mesh *mesh, int colour)

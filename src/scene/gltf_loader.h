@@ -98,7 +98,7 @@ assay_status assay_gltf_view_bytes(const assay_gltf_loader *loader, uint32_t vie
 
 /* What a use of an accessor asks of it. */
 typedef struct {
-    char     place[96];     /* for messages: "meshes/3/primitives/0: accessor 7 (POSITION)"    */
+    char     place[128];    /* for messages: "meshes/3/primitives/0: accessor 7 (POSITION)"    */
     uint32_t columns, rows; /* what its type must be                                           */
     bool     whole;         /* unsigned integers as they are, not numbers                      */
     bool     needs_unit;    /* integers must be normalized                                     */

@@ -22,18 +22,18 @@ typedef struct {
 /* One glTF primitive made of triangles; vertex arrays in the mesh's own frame.  Strips, fans and
  * missing indices are already turned into indexed triangles. */
 typedef struct {
-    uint32_t            vertex_count, triangle_count;
-    uint32_t           *indices;   /* 3 a triangle                                             */
-    float              *positions; /* 3 a vertex                                               */
-    float              *normals;   /* 3 a vertex; NULL: flat                                   */
-    float              *tangents;  /* 4 a vertex, w = sign of the bitangent; or NULL           */
-    float              *uv[2];     /* 2 a vertex, or NULL                                      */
-    float              *colors;    /* 4 a vertex, linear RGBA (COLOR_0), or NULL               */
-    uint16_t           *joints;    /* 4 * joint_sets a vertex, or NULL                         */
-    float              *weights;   /* likewise, >= 0, sum > 0; divided by the sum when used    */
-    uint32_t            joint_sets;
-    uint32_t            material;  /* index into the scene's materials (the default material of
-                                      glTF is its last)                                         */
+    uint32_t  vertex_count, triangle_count;
+    uint32_t *indices;   /* 3 a triangle                                             */
+    float    *positions; /* 3 a vertex                                               */
+    float    *normals;   /* 3 a vertex; NULL: flat                                   */
+    float    *tangents;  /* 4 a vertex, w = sign of the bitangent; or NULL           */
+    float    *uv[2];     /* 2 a vertex, or NULL                                      */
+    float    *colors;    /* 4 a vertex, linear RGBA (COLOR_0), or NULL               */
+    uint16_t *joints;    /* 4 * joint_sets a vertex, or NULL                         */
+    float    *weights;   /* likewise, >= 0, sum > 0; divided by the sum when used    */
+    uint32_t  joint_sets;
+    uint32_t  material; /* index into the scene's materials (the default material of
+                           glTF is its last)                                         */
     assay_morph_target *targets;
     uint32_t            target_count;
 } assay_primitive;
@@ -47,21 +47,21 @@ typedef struct {
 } assay_mesh;
 
 typedef struct {
-    char     *name;
-    uint32_t  parent; /* ASSAY_NONE for a root; parents need not come before children */
-    uint32_t  mesh, skin, camera, light; /* or ASSAY_NONE                             */
-    bool      has_matrix;
-    bool      in_scene;          /* reachable from the chosen glTF scene              */
-    double    matrix[16];        /* column-major, where has_matrix                    */
-    double    translation[3], rotation[4] /* x y z w */, scale[3];
-    double   *weights;           /* morph weights of this node, or NULL               */
-    uint32_t  weight_count;
-    uint32_t  first_weight;      /* of the current ones, in the scene's morph_weights */
-    uint32_t  target_count;      /* morph targets of its mesh                         */
+    char    *name;
+    uint32_t parent; /* ASSAY_NONE for a root; parents need not come before children */
+    uint32_t mesh, skin, camera, light; /* or ASSAY_NONE                             */
+    bool     has_matrix;
+    bool     in_scene;   /* reachable from the chosen glTF scene              */
+    double   matrix[16]; /* column-major, where has_matrix                    */
+    double   translation[3], rotation[4] /* x y z w */, scale[3];
+    double  *weights; /* morph weights of this node, or NULL               */
+    uint32_t weight_count;
+    uint32_t first_weight; /* of the current ones, in the scene's morph_weights */
+    uint32_t target_count; /* morph targets of its mesh                         */
 } assay_node;
 
 typedef struct {
-    uint32_t *joints; /* nodes */
+    uint32_t *joints;       /* nodes */
     double   *inverse_bind; /* 16 a joint, column-major; NULL: identities */
     uint32_t  joint_count;
     uint32_t  first_matrix; /* of the current ones, in the scene's joint_matrices */
@@ -126,10 +126,10 @@ typedef struct {
     uint32_t               node, mesh, primitive_index;
     const assay_primitive *primitive; /* uv and colors come from here                      */
     uint32_t               material;
-    float                 *normals;   /* 3 a vertex, world, unit; NULL: flat               */
-    float                 *tangents;  /* 4 a vertex, world; NULL: none                     */
-    bool                   flipped;   /* the node mirrors: the winding in `indices` is
-                                         already turned, so that fronts stay fronts        */
+    float                 *normals;  /* 3 a vertex, world, unit; NULL: flat               */
+    float                 *tangents; /* 4 a vertex, world; NULL: none                     */
+    bool                   flipped;  /* the node mirrors: the winding in `indices` is
+                                        already turned, so that fronts stay fronts        */
 } assay_shape;
 
 /* A punctual light in the world. */
@@ -210,7 +210,7 @@ void assay_scene_warn(assay_scene *scene, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
 /* Textures: rgba in [0, 1] at uv; srgb: decode R, G, B before filtering. */
-void assay_texture_sample(const assay_scene *scene, const assay_texture_ref *ref, const double uv[2],
-                          bool srgb, double rgba_out[4]);
+void assay_texture_sample(const assay_scene *scene, const assay_texture_ref *ref,
+                          const double uv[2], bool srgb, double rgba_out[4]);
 
 #endif

@@ -42,15 +42,25 @@ static inline double affine_determinant(const assay_affine *a)
     return vec3_dot(a->x, vec3_cross(a->y, a->z));
 }
 
-/* Where the plane with normal n goes: cofactors, which are the determinant times the inverse
- * transpose but exist for singular maps too; turned for mirrors so that outside stays outside. Not
- * normalised. */
-static inline assay_vec3 affine_normal(const assay_affine *a, assay_vec3 n)
+/* The map of normals: cofactors, which are the determinant times the inverse transpose but exist
+ * for singular maps too, turned for mirrors so that outside stays outside.  Lengths are not kept.
+ */
+static inline assay_affine affine_normal_map(const assay_affine *a)
 {
-    const assay_affine cofactor = {
-        vec3_cross(a->y, a->z), vec3_cross(a->z, a->x), vec3_cross(a->x, a->y), {0, 0, 0}};
-    const assay_vec3 m = affine_vector(&cofactor, n);
-    return affine_determinant(a) < 0.0 ? vec3_negate(m) : m;
+    const double s = affine_determinant(a) < 0.0 ? -1.0 : 1.0;
+    return (assay_affine){vec3_scale(vec3_cross(a->y, a->z), s),
+                          vec3_scale(vec3_cross(a->z, a->x), s),
+                          vec3_scale(vec3_cross(a->x, a->y), s),
+                          {0, 0, 0}};
+}
+
+/* sum += weight * a */
+static inline void affine_add(assay_affine *sum, double weight, const assay_affine *a)
+{
+    sum->x = vec3_mad(sum->x, weight, a->x);
+    sum->y = vec3_mad(sum->y, weight, a->y);
+    sum->z = vec3_mad(sum->z, weight, a->z);
+    sum->t = vec3_mad(sum->t, weight, a->t);
 }
 
 /* From 16 numbers in column-major order; the last row is taken as 0 0 0 1. */

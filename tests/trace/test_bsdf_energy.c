@@ -165,6 +165,12 @@ static double no_transmission(double value, assay_vec3 wo, assay_vec3 wi)
     return wo.z * wi.z > 0.0 ? value : 0.0;
 }
 
+/* Refraction without the 1 / eta^2 of radiance. */
+static double unscaled(double value, assay_vec3 wo, assay_vec3 wi)
+{
+    return wo.z * wi.z > 0.0 ? value : value * (wo.z > 0.0 ? 2.25 : 1.0 / 2.25);
+}
+
 static void expect_caught(const char *name, double (*mutate)(double, assay_vec3, assay_vec3))
 {
     bsdf_case c;
@@ -195,6 +201,7 @@ static void test_mutants(void **state)
     }
     expect_caught("solid 0.7", no_transmission);
     expect_caught("thin 0.8", no_transmission);
+    expect_caught("solid 0.7", unscaled);
 }
 
 /* ---- closed forms ---- */
