@@ -28,7 +28,9 @@ typedef struct {
     exr_attr_box2i_t         data, display; /* inclusive */
     assay_image             *image;
     assay_channel           *targets; /* one a channel of the file, in its order */
-    char                     message[200];
+    exr_compression_t        compression;
+    exr_result_t (*decompress)(exr_decode_pipeline_t *); /* the library's choice */
+    char message[200];
 } exr_job;
 
 /* What one chunk's unpacking has to know. */
@@ -43,7 +45,8 @@ static void on_error(exr_const_context_t exr, exr_result_t code, const char *mes
 {
     void *job = NULL;
     (void)code;
-    if (exr_get_user_data(exr, &job) == EXR_ERR_SUCCESS && job) {
+    /* The first message is the one that names the cause. */
+    if (exr_get_user_data(exr, &job) == EXR_ERR_SUCCESS && job && !((exr_job *)job)->message[0]) {
         snprintf(((exr_job *)job)->message, sizeof((exr_job *)job)->message, "%s", message);
     }
 }
@@ -88,17 +91,16 @@ static const char *compression_name(exr_compression_t compression)
 }
 
 /* What the library would crash on, or what assay does not read. */
-static assay_status check_kind(const exr_job *job)
+static assay_status check_kind(exr_job *job)
 {
-    int               parts = 0;
-    exr_storage_t     storage;
-    exr_compression_t compression;
-    exr_result_t      result = exr_get_count(job->exr, &parts);
+    int           parts = 0;
+    exr_storage_t storage;
+    exr_result_t  result = exr_get_count(job->exr, &parts);
     if (result == EXR_ERR_SUCCESS) {
         result = exr_get_storage(job->exr, 0, &storage);
     }
     if (result == EXR_ERR_SUCCESS) {
-        result = exr_get_compression(job->exr, 0, &compression);
+        result = exr_get_compression(job->exr, 0, &job->compression);
     }
     if (result != EXR_ERR_SUCCESS) {
         return fail_exr(job, result, "header");
@@ -107,10 +109,10 @@ static assay_status check_kind(const exr_job *job)
         return assay_fail(job->context, ASSAY_ERR_UNSUPPORTED,
                           "%s: OpenEXR deep data is not read; flatten the image", job->name);
     }
-    if (compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB) {
+    if (job->compression == EXR_COMPRESSION_DWAA || job->compression == EXR_COMPRESSION_DWAB) {
         return assay_fail(job->context, ASSAY_ERR_UNSUPPORTED,
                           "%s: OpenEXR compression %s is not read; convert the file to ZIP or PIZ",
-                          job->name, compression_name(compression));
+                          job->name, compression_name(job->compression));
     }
     if (parts > 1) {
         assay_inform(job->context, ASSAY_LOG_WARNING, "%s: only the first of %d parts is read",
@@ -298,7 +300,7 @@ static exr_result_t unpack_chunk(exr_decode_pipeline_t *decode)
         expected += job->channels->entries[c].pixel_type == EXR_PIXEL_HALF ? 2 : 4;
     }
     expected *= (uint64_t)width * (uint64_t)decode->chunk.height;
-    if (!packed || decode->chunk.unpacked_size != expected) {
+    if (!packed || decode->chunk.packed_size == 0 || decode->chunk.unpacked_size != expected) {
         return EXR_ERR_CORRUPT_CHUNK;
     }
     for (int32_t row = 0; row < decode->chunk.height; row++) {
@@ -317,11 +319,16 @@ static exr_result_t read_chunk(exr_job *job, exr_decode_pipeline_t *decode, bool
     exr_result_t result = first ? exr_decoding_initialize(job->exr, 0, chunk, decode)
                                 : exr_decoding_update(job->exr, 0, chunk, decode);
     if (result == EXR_ERR_SUCCESS && first) {
-        result = exr_decoding_choose_default_routines(job->exr, 0, decode);
+        result          = exr_decoding_choose_default_routines(job->exr, 0, decode);
+        job->decompress = decode->decompress_fn;
     }
     if (result != EXR_ERR_SUCCESS) {
         return result;
     }
+    /* A chunk that compression would not have made smaller is stored as it is; 3.1 forgets that for
+     * B44 and would scramble it. */
+    const bool raw                = chunk->packed_size == chunk->unpacked_size;
+    decode->decompress_fn         = raw ? NULL : job->decompress;
     decode->decoding_user_data    = place;
     decode->unpack_and_convert_fn = unpack_chunk;
     return exr_decoding_run(job->exr, 0, decode);
@@ -405,11 +412,11 @@ assay_status assay_image_decode_exr(assay_context *context, const uint8_t *bytes
     init.user_data                 = &job;
     init.read_fn                   = read_bytes;
     init.size_fn                   = file_size;
-    init.max_image_width           = ASSAY_IMAGE_MAX_SIDE;
-    init.max_image_height          = ASSAY_IMAGE_MAX_SIDE;
+    init.max_image_width           = 1 << 24; /* beyond ours, so that ours is told */
+    init.max_image_height          = 1 << 24;
     init.max_tile_width            = ASSAY_IMAGE_MAX_SIDE;
     init.max_tile_height           = ASSAY_IMAGE_MAX_SIDE;
-    init.flags                     = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
+    init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION | EXR_CONTEXT_FLAG_STRICT_HEADER;
 
     const exr_result_t result = exr_start_read(&job.exr, name, &init);
     const assay_status status =

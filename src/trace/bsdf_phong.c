@@ -1,4 +1,4 @@
-/* bsdf_phong.c - the modified Phong model, [lafortune94] eq. 2, 3 and 8, 9.
+/* bsdf_phong.c - the modified Phong model, [lafortune94].
  *
  *     f = base_color / pi + specular_color (n + 2) / (2 pi) cos^n a
  *

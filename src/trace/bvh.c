@@ -9,7 +9,7 @@
 
 bvh_tuning bvh_tuning_default(void)
 {
-    return (bvh_tuning){.box_margin     = 3.5 * 0x1p-24,
+    return (bvh_tuning){.box_margin     = 6.5 * 0x1p-24,
                         .filter_margin  = 11.0 * 0x1p-24,
                         .residual_limit = 0x1p-40,
                         .leaf_size      = BVH_LEAF_SIZE,
@@ -94,7 +94,8 @@ uint64_t assay_bvh_bytes(const assay_bvh *bvh)
 bool assay_bvh_closest_brute_force(const assay_bvh *bvh, const assay_ray *ray, assay_hit *hit_out)
 {
     const assay_triangles *t     = &bvh->triangles;
-    bvh_query              query = bvh_query_start(bvh, ray);
+    bvh_query              query;
+    bvh_query_start(&query, bvh, ray);
     for (uint32_t i = 0; i < t->triangle_count; i++) {
         if (bvh_triangle_is_degenerate(t, i)) {
             continue;

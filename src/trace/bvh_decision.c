@@ -27,7 +27,9 @@ static inline sheared shear(const bvh_shear *ray, const float *corner, size_t ax
 /* The signs of a closed triangle: none below zero, or none above. */
 static inline bool encloses(edges e)
 {
-    return !((e.u < 0.0 || e.v < 0.0 || e.w < 0.0) && (e.u > 0.0 || e.v > 0.0 || e.w > 0.0));
+    const double uv_low = e.u < e.v ? e.u : e.v, uv_high = e.u > e.v ? e.u : e.v;
+    const double low = uv_low < e.w ? uv_low : e.w, high = uv_high > e.w ? uv_high : e.w;
+    return !((low < 0.0) & (high > 0.0));
 }
 
 /* Whether the point that the edge functions stand for is on the ray; false for det = 0 and NaN. */

@@ -33,34 +33,55 @@ typedef struct {
     double    v, w, det;     /* edge functions of the best hit; det = 0: no hit       */
 } bvh_query;
 
-static inline bvh_query bvh_query_start(const assay_bvh *bvh, const assay_ray *ray)
+/* The axis of the largest component, without a branch: rays of any kind take turns. */
+static inline uint32_t bvh_largest_axis(double x, double y, double z)
 {
-    const double   d[3] = {ray->direction.x, ray->direction.y, ray->direction.z};
-    const double   o[3] = {ray->origin.x, ray->origin.y, ray->origin.z};
-    const double   x = fabs(d[0]), y = fabs(d[1]), z = fabs(d[2]);
-    const uint32_t kz = x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
-    const uint32_t kx = kz == 2 ? 0 : kz + 1, ky = kx == 2 ? 0 : kx + 1;
+    const uint32_t y_over_x  = y > x;
+    const uint32_t z_over_xy = z > (y > x ? y : x);
+    return z_over_xy << 1 | (y_over_x & ~z_over_xy);
+}
+
+/* Loads one number by itself.  Compilers like to load two or four of a ray that was just written
+ * number by number at once, which makes a processor wait until the writes have left its queue. */
+static inline double bvh_load_alone(const double *p)
+{
+    double x = *p;
+#if defined(__x86_64__)
+    __asm__("" : "+x"(x));
+#elif defined(__aarch64__)
+    __asm__("" : "+w"(x));
+#endif
+    return x;
+}
+
+static inline void bvh_query_start(bvh_query *q, const assay_bvh *bvh, const assay_ray *ray)
+{
+    const double   d[3] = {bvh_load_alone(&ray->direction.x), bvh_load_alone(&ray->direction.y),
+                           bvh_load_alone(&ray->direction.z)};
+    const double   o[3] = {bvh_load_alone(&ray->origin.x), bvh_load_alone(&ray->origin.y),
+                           bvh_load_alone(&ray->origin.z)};
+    const uint32_t kz = bvh_largest_axis(fabs(d[0]), fabs(d[1]), fabs(d[2]));
+    const uint32_t kx = 0x09U >> 2 * kz & 3U, ky = 0x12U >> 2 * kz & 3U; /* the next, the one after */
     const double   ox = fabs(o[0]), oy = fabs(o[1]), oz = fabs(o[2]);
     const double   oxy = ox > oy ? ox : oy;
-    bvh_query      q;
-    q.shear.axis[0]    = kx;
-    q.shear.axis[1]    = ky;
-    q.shear.axis[2]    = kz;
-    q.shear.o[0]       = o[kx];
-    q.shear.o[1]       = o[ky];
-    q.shear.o[2]       = o[kz];
-    q.shear.sx         = d[kx] / d[kz];
-    q.shear.sy         = d[ky] / d[kz];
-    q.shear.inverse_dz = 1.0 / d[kz];
-    q.shear.abs_dz     = fabs(d[kz]);
-    q.shear.magnitude  = bvh->extent + (oxy > oz ? oxy : oz);
-    q.shear.residual   = bvh->tuning.residual_limit * q.shear.magnitude;
-    q.t_after          = ray->t_after;
-    q.triangle_after   = ray->triangle_after;
-    q.best_triangle    = 0;
-    q.best_t           = ray->t_max;
-    q.v = q.w = q.det = 0.0;
-    return q;
+
+    q->shear.axis[0]    = kx;
+    q->shear.axis[1]    = ky;
+    q->shear.axis[2]    = kz;
+    q->shear.o[0]       = o[kx];
+    q->shear.o[1]       = o[ky];
+    q->shear.o[2]       = o[kz];
+    q->shear.sx         = d[kx] / d[kz];
+    q->shear.sy         = d[ky] / d[kz];
+    q->shear.inverse_dz = 1.0 / d[kz];
+    q->shear.abs_dz     = fabs(d[kz]);
+    q->shear.magnitude  = bvh->extent + (oxy > oz ? oxy : oz);
+    q->shear.residual   = bvh->tuning.residual_limit * q->shear.magnitude;
+    q->t_after          = ray->t_after;
+    q->triangle_after   = ray->triangle_after;
+    q->best_triangle    = 0;
+    q->best_t           = ray->t_max;
+    q->v = q->w = q->det = 0.0;
 }
 
 /* Lets a triangle compete for the first hit; true when it became the best so far.

@@ -9,18 +9,20 @@
  * over what the decision would refuse (docs/exact-hits.md). */
 #include "trace/bvh_decision.h"
 
-static const double least_step   = 0x1p-40; /* of a direction against its largest component  */
-static const double range_low    = 0x1p-60; /* M outside is left to the double kernel, m     */
-static const double range_high   = 0x1p60;
-static const double slack        = 0x1p-22; /* of distances rounded to float                 */
+static const float  least_step   = 0x1p-40F; /* of a direction against its largest component */
+static const double range_low    = 0x1p-60;  /* M (m) and the direction's largest component;  */
+static const double range_high   = 0x1p60;   /* outside is left to the double kernel          */
+static const double slack        = 0x1p-22;  /* of distances rounded to float                 */
 static const double least_slack  = 0x1p-100;
-static const double filter_floor = 0x1p-140; /* products may vanish by this much, m2         */
+static const double filter_floor = 0x1p-140; /* products may vanish by this much, m2          */
 
-/* The ray as the boxes see it: by tau = t |dz|, in the world's axes. */
+/* The ray as the boxes see it: by tau = t scale, in the world's axes. */
 typedef struct {
-    float  inverse[3], near[3], far[3]; /* planes to tau: plane * inverse - near         */
-    size_t near_plane[3];               /* which of bvh_node.plane is met first          */
+    _Alignas(16) float inverse[4];
+    _Alignas(16) float near[4], far[4]; /* planes to tau: plane * inverse - near */
+    size_t near_plane[3];               /* which of bvh_node.plane is met first  */
     float  tau_after;
+    double scale; /* the largest component of the direction, as a float */
 } box_ray;
 
 /* The ray as the filter sees it: sheared, with the error's bound slope * extent + offset. */
@@ -46,39 +48,54 @@ static inline float tau_below(double tau)
     return (float)(tau - (fabs(tau) * slack + least_slack));
 }
 
+static inline v4 v4_of(const assay_vec3 *v)
+{
+    return v4_set((float)bvh_load_alone(&v->x), (float)bvh_load_alone(&v->y),
+                  (float)bvh_load_alone(&v->z));
+}
+
+static inline void start_boxes(box_ray *r, const assay_bvh *bvh, const assay_ray *ray, double m)
+{
+    const v4       d       = v4_of(&ray->direction);
+    const v4       size    = v4_absolute(d);
+    const float    scale   = v4_largest_of_three(size);
+    const v4       least   = v4_set1(scale * least_step);
+    const v4       inverse = v4_copy_sign(v4_divide(v4_set1(scale), v4_max(size, least)), d);
+    const v4       origin  = v4_multiply(v4_of(&ray->origin), inverse);
+    const float    margin  = (float)(bvh->tuning.box_margin * m);
+    const v4       widen   = v4_multiply(v4_set1(margin), v4_absolute(inverse));
+    const unsigned signs   = v4_signs(d);
+    v4_store(r->inverse, inverse);
+    v4_store(r->near, v4_add(origin, widen));
+    v4_store(r->far, v4_subtract(origin, widen));
+    for (unsigned k = 0; k < 3; k++) {
+        r->near_plane[k] = 2 * k + (signs >> k & 1);
+    }
+    r->scale = (double)scale;
+}
+
 /* False where the range of float does not suffice. */
 static inline bool walk_start(walk_state *s, const assay_bvh *bvh, const assay_ray *ray)
 {
-    s->query               = bvh_query_start(bvh, ray);
+    bvh_query_start(&s->query, bvh, ray);
     const bvh_shear *shear = &s->query.shear;
     const double     m     = shear->magnitude;
-    if (!(m >= range_low && m <= range_high)) {
+    if (!(m >= range_low && m <= range_high && shear->abs_dz >= range_low &&
+          shear->abs_dz <= range_high)) {
         return false;
     }
-    const double sign   = copysign(1.0, shear->inverse_dz);
-    const double d[3]   = {shear->sx * sign, shear->sy * sign, sign};
-    const double margin = bvh->tuning.box_margin * m;
-    for (int k = 0; k < 3; k++) {
-        const uint32_t axis     = shear->axis[k];
-        const double   step     = fabs(d[k]) >= least_step ? d[k] : copysign(least_step, d[k]);
-        const float    inverse  = (float)(1.0 / step);
-        const double   origin   = shear->o[k] * (double)inverse;
-        const double   widening = margin * fabs((double)inverse);
-
-        s->boxes.inverse[axis]    = inverse;
-        s->boxes.near[axis]       = (float)(origin + widening);
-        s->boxes.far[axis]        = (float)(origin - widening);
-        s->boxes.near_plane[axis] = 2 * axis + (inverse < 0.0F);
-        s->filter.o[k]            = (float)shear->o[k];
-        s->filter.axis[k]         = axis * BVH_LEAF_SIZE;
-    }
+    start_boxes(&s->boxes, bvh, ray, m);
     const double error = bvh->tuning.filter_margin * m;
+    for (int k = 0; k < 3; k++) {
+        s->filter.o[k]    = (float)shear->o[k];
+        s->filter.axis[k] = (size_t)shear->axis[k] * BVH_LEAF_SIZE;
+    }
     s->filter.sx       = (float)shear->sx;
     s->filter.sy       = (float)shear->sy;
     s->filter.slope    = (float)(6.0 * error);
     s->filter.offset   = (float)(6.0 * error * error + filter_floor);
-    s->boxes.tau_after = tau_below(s->query.t_after * shear->abs_dz);
-    s->tau_best        = tau_above(s->query.best_t * shear->abs_dz);
+    s->boxes.tau_after = tau_below(s->query.t_after * s->boxes.scale);
+    s->tau_best        = tau_above(s->query.best_t * s->boxes.scale);
     return true;
 }
 
@@ -116,20 +133,25 @@ static inline unsigned filter_leaf(const filter_ray *r, const bvh_leaf *leaf)
     return v4_less_equal(v4_min(v4_negate(low), high), bound);
 }
 
-/* True when a triangle of the leaf became the best hit. */
-__attribute__((noinline)) static bool try_leaf(walk_state *s, const bvh_leaf *leaf)
+/* True when one of these triangles of the leaf became the best hit. */
+__attribute__((noinline)) static bool try_lanes(walk_state *s, const bvh_leaf *leaf, unsigned lanes)
 {
-    unsigned lanes = filter_leaf(&s->filter, leaf);
-    bool     found = false;
-    for (; lanes; lanes &= lanes - 1) {
+    bool found = false;
+    do {
         const int lane = __builtin_ctz(lanes);
         found |= bvh_query_try(&s->query, &leaf->vertex[0][0][lane], 3 * BVH_LEAF_SIZE,
                                BVH_LEAF_SIZE, leaf->triangle[lane]);
-    }
+        lanes &= lanes - 1;
+    } while (lanes);
     if (found) {
-        s->tau_best = tau_above(s->query.best_t * s->query.shear.abs_dz);
+        s->tau_best = tau_above(s->query.best_t * s->boxes.scale);
     }
     return found;
+}
+static inline bool try_leaf(walk_state *s, const bvh_leaf *leaf)
+{
+    unsigned lanes = filter_leaf(&s->filter, leaf);
+    return lanes && try_lanes(s, leaf, lanes);
 }
 
 /* ---- nodes ---- */
@@ -169,6 +191,12 @@ static inline unsigned meet_children(const box_vectors *r, const bvh_node *node,
     return v8_less_equal(enter, leave);
 }
 
+static inline void prefetch(const assay_bvh *bvh, uint32_t reference)
+{
+    const unsigned char *at = bvh->memory + (size_t)(reference & ~BVH_LEAF_BIT) * BVH_UNIT;
+    __builtin_prefetch(at + 0);
+}
+
 /* A child still to visit: bits of its entry above, its reference below. */
 static inline uint64_t stack_item(float entry, uint32_t reference)
 {
@@ -186,13 +214,14 @@ static inline float stack_entry(uint64_t item)
 }
 
 /* Pushes the children in `mask`, the nearest last; returns the new top. */
-static inline uint64_t *push_children(uint64_t *top, const bvh_node *node, const float *entry,
+static inline uint64_t *push_children(const assay_bvh *bvh, uint64_t *top, const bvh_node *node, const float *entry,
                                       unsigned mask)
 {
     uint64_t *first = top;
     for (; mask; mask &= mask - 1) {
         const int      i    = __builtin_ctz(mask);
         const uint64_t item = stack_item(entry[i], node->child[i]);
+        prefetch(bvh, node->child[i]);
         uint64_t      *at   = top++;
         for (; at > first && at[-1] < item; at--) {
             *at = at[-1];
@@ -221,6 +250,7 @@ static bool closest(const assay_bvh *bvh, const assay_ray *ray, assay_hit *hit_o
             if (mask) {
                 const int i = __builtin_ctz(mask);
                 reference   = node->child[i];
+                prefetch(bvh, reference);
                 mask &= mask - 1;
                 if (!mask) {
                     continue;
@@ -229,6 +259,7 @@ static bool closest(const assay_bvh *bvh, const assay_ray *ray, assay_hit *hit_o
                 mask &= mask - 1;
                 if (!mask) {
                     const uint32_t other = node->child[j];
+                    prefetch(bvh, other);
                     if (entry[i] <= entry[j]) {
                         *top++ = stack_item(entry[j], other);
                     } else {
@@ -238,7 +269,7 @@ static bool closest(const assay_bvh *bvh, const assay_ray *ray, assay_hit *hit_o
                     continue;
                 }
                 mask |= 1U << i | 1U << j;
-                top       = push_children(top, node, entry, mask);
+                top       = push_children(bvh, top, node, entry, mask);
                 reference = (uint32_t)*--top;
                 continue;
             }
@@ -280,6 +311,7 @@ static bool occluded(const assay_bvh *bvh, const assay_ray *ray)
         unsigned mask = meet_children(&boxes, node, tau_best, entry);
         for (; mask; mask &= mask - 1) {
             *top++ = node->child[__builtin_ctz(mask)];
+            prefetch(bvh, top[-1]);
         }
     }
     return false;

@@ -76,14 +76,16 @@ static void walk(const assay_bvh *bvh, bvh_query *query, bool any)
 
 static bool closest(const assay_bvh *bvh, const assay_ray *ray, assay_hit *hit_out)
 {
-    bvh_query query = bvh_query_start(bvh, ray);
+    bvh_query query;
+    bvh_query_start(&query, bvh, ray);
     walk(bvh, &query, false);
     return bvh_query_finish(&query, hit_out);
 }
 
 static bool occluded(const assay_bvh *bvh, const assay_ray *ray)
 {
-    bvh_query query = bvh_query_start(bvh, ray);
+    bvh_query query;
+    bvh_query_start(&query, bvh, ray);
     walk(bvh, &query, true);
     return query.det != 0.0;
 }

@@ -7,7 +7,7 @@
 
 #include "math/vec.h"
 
-/* (1 - c)^5, what carries a reflectance from normal to grazing incidence, [schlick94] eq. 15. */
+/* (1 - c)^5, what carries a reflectance from normal to grazing incidence, [schlick94]. */
 static inline double assay_schlick(double c)
 {
     const double x  = c < 1.0 ? 1.0 - c : 0.0;

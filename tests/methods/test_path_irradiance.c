@@ -151,7 +151,7 @@ static void sphere(void **state)
         {0, 0, 0, 0, 1, 0}, {2, 0, 1, 0, 1, 0}, {-1, 0.5, 0, 0.6, 0.8, 0}, {0, 2, 3, 0, 0, -1}};
     const assay_vec3 centre     = vec3(0, 2, 0);
     const setting    settings[] = {
-           {"bounces", "1"}, {"spp", "20000"}, {"gradients", "off"}, {NULL, NULL}};
+           {"bounces", "1"}, {"spp", "400000"}, {"gradients", "off"}, {NULL, NULL}};
     assay_context *context = measure_context(2);
     scene_builder *b       = scene_builder_create();
     const int      light   = scene_builder_diffuse(b, 0.0, 1.0, false);

@@ -222,7 +222,7 @@ static void test_formulas(void **state)
 
 /* ---- reciprocity ---- */
 
-/* f(wo, wi) / n(wo)^2, which is symmetric ([walter07] section 4.2, [veach97] eq. 5.14). */
+/* f(wo, wi) / n(wo)^2, which is symmetric, [veach97] section 5.2. */
 static double symmetric_form(const assay_bsdf *b, assay_vec3 wo, assay_vec3 wi, bool fresnel_of_wo)
 {
     const double n = bsdf_has_inside(b) && wo.z < 0.0 ? b->ior : 1.0;
@@ -387,6 +387,33 @@ static void test_extreme_parameters(void **state)
     }
 }
 
+/* Whatever scatters can be drawn, in all mixtures of lobes: a value > 0 has a density > 0. */
+static void test_support(void **state)
+{
+    (void)state;
+    for (int c = 0; c < bsdf_case_count(); c++) {
+        for (int variant = 0; variant < 32; variant++) {
+            assay_bsdf b      = bsdf_case_at(c).bsdf;
+            b.base_color      = variant & 1 ? rgb_grey(0.0) : b.base_color;
+            b.specular_factor = variant & 2 ? 0.0 : b.specular_factor;
+            b.ior             = variant & 4 ? 1.0 : b.ior;
+            b.solid           = variant & 8 ? true : b.solid;
+            if (variant & 16) {
+                b.ior          = 1.05;
+                b.transmission = 0.0;
+            }
+            for (uint32_t i = 0; i < 400; i++) {
+                assay_vec3 wo, wi;
+                random_pair(i, 3, &wo, &wi);
+                const assay_bsdf_value normal = assay_bsdf_evaluate(&b, vec3(0.0, 0.0, 1.0), wi);
+                const assay_bsdf_value any    = assay_bsdf_evaluate(&b, wo, wi);
+                assert_true(rgb_is_black(any.value) || any.pdf > 0.0);
+                assert_true(rgb_is_black(normal.value) || normal.pdf > 0.0);
+            }
+        }
+    }
+}
+
 /* ---- the small functions ---- */
 
 static void test_is_specular(void **state)
@@ -428,10 +455,11 @@ static void test_albedo(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_formulas),    cmocka_unit_test(test_reciprocity),
-        cmocka_unit_test(test_fresnel),     cmocka_unit_test(test_total_reflection),
-        cmocka_unit_test(test_corners),     cmocka_unit_test(test_extreme_parameters),
-        cmocka_unit_test(test_is_specular), cmocka_unit_test(test_albedo),
+        cmocka_unit_test(test_formulas), cmocka_unit_test(test_reciprocity),
+        cmocka_unit_test(test_fresnel),  cmocka_unit_test(test_total_reflection),
+        cmocka_unit_test(test_corners),  cmocka_unit_test(test_extreme_parameters),
+        cmocka_unit_test(test_support),  cmocka_unit_test(test_is_specular),
+        cmocka_unit_test(test_albedo),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

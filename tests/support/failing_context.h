@@ -1,0 +1,24 @@
+/* failing_context.h - contexts whose memory is counted, and refused on demand. */
+#ifndef ASSAY_TESTS_FAILING_CONTEXT_H
+#define ASSAY_TESTS_FAILING_CONTEXT_H
+
+#include <stdint.h>
+
+#include "assay/context.h"
+
+typedef struct {
+    uint64_t asked;    /* blocks asked for since the context was made          */
+    uint64_t fail_at;  /* which of them is refused, counted from 1; 0: none    */
+    uint64_t live;     /* blocks held now; the context itself is one           */
+    char     log[256]; /* last warning                                        */
+} failing_memory;
+
+/* A context on the counted memory, one thread.  *memory is reset but for fail_at. */
+assay_context *failing_context(failing_memory *memory);
+
+/* Calls `work` with the 1st, 2nd, ... block refused until it succeeds.  Fails the test unless each
+ * refusal gives ASSAY_ERR_MEMORY with a message and nothing is left allocated.  work must release
+ * all that it makes.  Returns the number of refusals. */
+int failing_each(assay_status (*work)(assay_context *context, void *user), void *user);
+
+#endif
