@@ -58,6 +58,10 @@ ASSAY_API int assay_context_threads(const assay_context *context);
 /* Releases a text that a call made; NULL is legal. */
 ASSAY_API void assay_text_destroy(assay_context *context, char *text);
 
+/* Writes a text to a file, beside and then renamed: on any error the file of that name is as it was.
+ * Errors: WRITE, MEMORY. */
+ASSAY_API assay_status assay_text_write(assay_context *context, const char *path, const char *text);
+
 /* "0.1.0"; borrowed. */
 ASSAY_API const char *assay_version(void);
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "gltf_document.h"
+#include "writer_document.h"
 
 gltf_document *gltf_create(const char *name, const char *description)
 {

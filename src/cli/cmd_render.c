@@ -89,7 +89,7 @@ static assay_status write_stats(const render_job *job, const char *path)
         add_seconds(root, job) && add_memory(root, s) &&
         cJSON_AddNumberToObject(root, "threads", s->threads);
     char        *text   = ok ? cJSON_Print(root) : NULL;
-    assay_status status = text ? cli_write_text(job->console, path, text) : ASSAY_ERR_MEMORY;
+    assay_status status = text ? cli_write_text(job->context, path, text) : ASSAY_ERR_MEMORY;
     cJSON_free(text);
     cJSON_Delete(root);
     return status;

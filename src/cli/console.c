@@ -110,26 +110,10 @@ bool cli_can_write(const cli_console *console, const char *path)
     return writable;
 }
 
-assay_status cli_write_text(const cli_console *console, const char *path, const char *text)
+assay_status cli_write_text(assay_context *context, const char *path, const char *text)
 {
-    if (strcmp(path, "-") == 0) {
-        return fputs(text, stdout) < 0 || fflush(stdout) ? ASSAY_ERR_WRITE : ASSAY_OK;
+    if (strcmp(path, "-") != 0) {
+        return assay_text_write(context, path, text);
     }
-    char temporary[4096];
-    if ((size_t)snprintf(temporary, sizeof temporary, "%s.XXXXXX", path) >= sizeof temporary) {
-        return ASSAY_ERR_WRITE;
-    }
-    const int file = mkstemp(temporary);
-    FILE     *out  = file < 0 ? NULL : fdopen(file, "w");
-    bool      ok   = out && fputs(text, out) >= 0;
-    ok             = out && fclose(out) == 0 && ok;
-    ok             = ok && rename(temporary, path) == 0;
-    if (!ok) {
-        fprintf(stderr, "assay %s: %s: %s\n", console->command, path, strerror(errno));
-        if (file >= 0) {
-            unlink(temporary);
-        }
-        return ASSAY_ERR_WRITE;
-    }
-    return ASSAY_OK;
+    return puts(text) < 0 || fflush(stdout) ? ASSAY_ERR_WRITE : ASSAY_OK;
 }

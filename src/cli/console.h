@@ -30,8 +30,8 @@ int cli_console_finish(cli_console *console, const assay_context *context, assay
  * folder itself): asked before hours are spent.  Prints what is wrong and answers false. */
 bool cli_can_write(const cli_console *console, const char *path);
 
-/* Writes a text to a file, beside and then renamed, or to stdout for "-". */
-assay_status cli_write_text(const cli_console *console, const char *path, const char *text);
+/* Writes a text to a file, or to stdout for "-". */
+assay_status cli_write_text(assay_context *context, const char *path, const char *text);
 
 /* The commands: arguments behind the command's name; they return the exit code. */
 int cli_render(int count, char **argv);

@@ -150,7 +150,7 @@ static int open_file(assay_atomic_file *file)
     if (S_ISDIR(there.st_mode)) {
         return EISDIR;
     }
-    if (access(file->path, W_OK) != 0) {
+    if (faccessat(AT_FDCWD, file->path, W_OK, AT_EACCESS) != 0) {
         return errno;
     }
     char        resolved[PATH_MAX];

@@ -18,26 +18,26 @@ typedef enum {
     ASSAY_BSDF_BLACK,              /* nothing is scattered                                       */
     ASSAY_BSDF_LAMBERT,            /* base_color / pi                                            */
     ASSAY_BSDF_METALLIC_ROUGHNESS, /* glTF 2.0 appendix B, with KHR ior, specular, transmission  */
-    ASSAY_BSDF_PHONG,              /* base_color / pi + specular (n + 2) / (2 pi) cos^n, [lafortune94] */
-    ASSAY_BSDF_WARD_PUBLISHED,     /* [ward92] eq. 5                                             */
-    ASSAY_BSDF_WARD                /* the same with the bounded albedo of [geisler10]            */
+    ASSAY_BSDF_PHONG, /* base_color / pi + specular (n + 2) / (2 pi) cos^n, [lafortune94] */
+    ASSAY_BSDF_WARD_PUBLISHED, /* [ward92] eq. 5                                             */
+    ASSAY_BSDF_WARD            /* the same with the bounded albedo of [geisler10]            */
 } assay_bsdf_model;
 
 /* Everything of a material that counts at one point, textures looked up.  A plain value. */
 typedef struct {
     assay_bsdf_model model;
-    assay_rgb base_color;     /* [0, 1]                                                          */
-    double    metallic;       /* [0, 1]                                                          */
-    double    roughness;      /* [0, 1], perceptual: alpha = roughness^2; below ASSAY_ALPHA_MIN
-                                 the lobe is a perfect mirror                                    */
-    double    ior;            /* 1.5; >= 1, or 0 for a Fresnel term of 1 (KHR_materials_ior)     */
-    double    specular_factor;/* KHR_materials_specular, 1                                       */
-    assay_rgb specular_color; /* KHR_materials_specular, 1 1 1; the specular lobe of Phong, Ward */
-    double    transmission;   /* KHR_materials_transmission, 0                                   */
-    bool      solid;          /* transmission refracts (a volume is behind the surface) instead of
-                                 passing an infinitely thin wall                                 */
-    double    exponent;       /* Phong, >= 0                                                     */
-    double    alpha_x, alpha_y; /* Ward, > 0, slopes along local x and y                         */
+    assay_rgb base_color;      /* [0, 1]                                                          */
+    double    metallic;        /* [0, 1]                                                          */
+    double    roughness;       /* [0, 1], perceptual: alpha = roughness^2; below ASSAY_ALPHA_MIN
+                                  the lobe is a perfect mirror                                    */
+    double    ior;             /* 1.5; >= 1, or 0 for a Fresnel term of 1 (KHR_materials_ior)     */
+    double    specular_factor; /* KHR_materials_specular, 1                                       */
+    assay_rgb specular_color;  /* KHR_materials_specular, 1 1 1; the specular lobe of Phong, Ward */
+    double    transmission;    /* KHR_materials_transmission, 0                                   */
+    bool      solid;           /* transmission refracts (a volume is behind the surface) instead of
+                                  passing an infinitely thin wall                                 */
+    double exponent;           /* Phong, >= 0                                                     */
+    double alpha_x, alpha_y;   /* Ward, > 0, slopes along local x and y                         */
 } assay_bsdf;
 
 /* alpha under which a GGX lobe is taken as a mirror. */
@@ -63,8 +63,8 @@ typedef struct {
     bool       transmitted; /* wi is on the other side                                           */
 } assay_bsdf_sample;
 
-/* Chooses wi from three uniform numbers in [0, 1).  False where the path ends (nothing scattered, or
- * a direction under the horizon was drawn, which counts as a zero contribution). */
+/* Chooses wi from three uniform numbers in [0, 1).  False where the path ends (nothing scattered,
+ * or a direction under the horizon was drawn, which counts as a zero contribution). */
 bool assay_bsdf_sample_direction(const assay_bsdf *bsdf, assay_vec3 wo, double u_lobe, double u1,
                                  double u2, assay_bsdf_sample *sample_out);
 

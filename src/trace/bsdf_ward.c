@@ -46,7 +46,8 @@ assay_vec3 assay_ward_choose(const assay_bsdf *bsdf, assay_vec3 wo, double u_lob
     }
     const double       radius  = sqrt(-assay_log1p(-u1));
     const assay_sincos azimuth = assay_sincos_turns(u2);
-    const assay_vec3   h       = vec3_normalize(vec3(width(bsdf->alpha_x) * radius * azimuth.cos,
-                                                     width(bsdf->alpha_y) * radius * azimuth.sin, 1.0));
+    const assay_vec3   slope   = vec3(width(bsdf->alpha_x) * radius * azimuth.cos,
+                                      width(bsdf->alpha_y) * radius * azimuth.sin, 1.0);
+    const assay_vec3   h       = vec3_normalize(slope);
     return vec3_mad(vec3_negate(wo), 2.0 * vec3_dot(wo, h), h);
 }

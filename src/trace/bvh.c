@@ -86,14 +86,11 @@ bool assay_bvh_occluded(const assay_bvh *bvh, const assay_ray *ray)
     return bvh->memory && bvh->kernel->occluded(bvh, ray);
 }
 
-uint64_t assay_bvh_bytes(const assay_bvh *bvh)
-{
-    return sizeof *bvh + bvh->bytes;
-}
+uint64_t assay_bvh_bytes(const assay_bvh *bvh) { return sizeof *bvh + bvh->bytes; }
 
 bool assay_bvh_closest_brute_force(const assay_bvh *bvh, const assay_ray *ray, assay_hit *hit_out)
 {
-    const assay_triangles *t     = &bvh->triangles;
+    const assay_triangles *t = &bvh->triangles;
     bvh_query              query;
     bvh_query_start(&query, bvh, ray);
     for (uint32_t i = 0; i < t->triangle_count; i++) {

@@ -1,7 +1,7 @@
 /* bvh.h - which triangle a ray meets first; the only room that knows Embree.
  *
- * Embree builds the tree; the decision is our own double test (docs/determinism.md), so every bit of
- * an answer (t, u, v, triangle, hit or miss) is the same on every machine, for any tree and any
+ * Embree builds the tree; the decision is our own double test (docs/determinism.md), so every bit
+ * of an answer (t, u, v, triangle, hit or miss) is the same on every machine, for any tree and any
  * vector width. */
 #ifndef ASSAY_TRACE_BVH_H
 #define ASSAY_TRACE_BVH_H

@@ -29,13 +29,13 @@ typedef struct {
 } raw_leaf;
 
 typedef struct {
-    assay_bvh    *bvh;
-    assay_status  status; /* of the progress callback */
-    RTCDevice     device;
-    RTCBVH        tree;
+    assay_bvh                *bvh;
+    assay_status              status; /* of the progress callback */
+    RTCDevice                 device;
+    RTCBVH                    tree;
     struct RTCBuildPrimitive *primitives;
-    size_t        primitive_count;
-    char          message[256]; /* Embree's words */
+    size_t                    primitive_count;
+    char                      message[256]; /* Embree's words */
 } builder;
 
 typedef struct {
@@ -72,7 +72,7 @@ bool bvh_triangle_is_degenerate(const assay_triangles *t, uint32_t triangle)
 {
     const float *a = corner_of(t, triangle, 0), *b = corner_of(t, triangle, 1),
                 *c = corner_of(t, triangle, 2);
-    double       e[3], f[3];
+    double e[3], f[3];
     for (int k = 0; k < 3; k++) {
         e[k] = (double)b[k] - (double)a[k];
         f[k] = (double)c[k] - (double)a[k];
@@ -107,7 +107,7 @@ static void set_bounds(void *node, const struct RTCBounds **bounds, unsigned int
     (void)user;
 }
 
-static void *create_leaf(RTCThreadLocalAllocator allocator,
+static void *create_leaf(RTCThreadLocalAllocator         allocator,
                          const struct RTCBuildPrimitive *primitives, size_t count, void *user)
 {
     (void)user;
@@ -141,8 +141,8 @@ static void keep_message(void *user, enum RTCError code, const char *text)
  * is about 1, and the largest coordinate itself. */
 static assay_status collect(builder *b)
 {
-    const assay_triangles *t     = &b->bvh->triangles;
-    size_t                 count = 0;
+    const assay_triangles *t      = &b->bvh->triangles;
+    size_t                 count  = 0;
     double                 extent = 0.0;
     for (uint32_t i = 0; i < t->triangle_count; i++) {
         if (bvh_triangle_is_degenerate(t, i)) {
@@ -177,9 +177,14 @@ static assay_status collect(builder *b)
             s[k]     = (float)((double)bounds.low[k] * scale);
             s[k + 3] = (float)((double)bounds.high[k] * scale);
         }
-        b->primitives[next++] = (struct RTCBuildPrimitive){.lower_x = s[0], .lower_y = s[1],
-            .lower_z = s[2], .geomID = 0, .upper_x = s[3], .upper_y = s[4], .upper_z = s[5],
-            .primID = i};
+        b->primitives[next++] = (struct RTCBuildPrimitive){.lower_x = s[0],
+                                                           .lower_y = s[1],
+                                                           .lower_z = s[2],
+                                                           .geomID  = 0,
+                                                           .upper_x = s[3],
+                                                           .upper_y = s[4],
+                                                           .upper_z = s[5],
+                                                           .primID  = i};
     }
     return ASSAY_OK;
 }
@@ -276,21 +281,15 @@ static void measure_tree(const raw_header *raw, uint32_t depth, measure *m)
     }
 }
 
-static float sum_of_two_largest_sides(const box *b)
-{
-    const double x = (double)b->high[0] - (double)b->low[0];
-    const double y = (double)b->high[1] - (double)b->low[1];
-    const double z = (double)b->high[2] - (double)b->low[2];
-    return nextafterf((float)(x + y + z - fmin(x, fmin(y, z))), INFINITY);
-}
-
 static box write_leaf(const assay_bvh *bvh, const raw_leaf *raw, bvh_leaf *leaf)
 {
     box bounds = empty_box;
     for (uint32_t lane = 0; lane < BVH_LEAF_SIZE; lane++) {
         if (lane >= raw->header.count) {
-            leaf->extent[lane]   = NAN;
             leaf->triangle[lane] = ASSAY_NO_TRIANGLE;
+            for (int k = 0; k < 9; k++) {
+                leaf->vertex[k / 3][k % 3][lane] = NAN;
+            }
             continue;
         }
         const uint32_t triangle = raw->triangle[lane];
@@ -300,14 +299,14 @@ static box write_leaf(const assay_bvh *bvh, const raw_leaf *raw, bvh_leaf *leaf)
                 leaf->vertex[c][k][lane] = corner_of(&bvh->triangles, triangle, c)[k];
             }
         }
-        leaf->extent[lane]   = sum_of_two_largest_sides(&own);
         leaf->triangle[lane] = triangle;
         box_add(&bounds, &own);
     }
     return bounds;
 }
 
-/* Writes the subtree at *next and after, advances *next, returns the subtree's reference and box. */
+/* Writes the subtree at *next and after, advances *next, returns the subtree's reference and box.
+ */
 static uint32_t write_tree(assay_bvh *bvh, const raw_header *raw, uint32_t *next, box *bounds_out)
 {
     const uint32_t here = *next;

@@ -42,7 +42,8 @@ static inline bool consistent(const bvh_shear *ray, edges e, double det, sheared
     return fabs(x) < limit && fabs(y) < limit;
 }
 
-/* p q - r s with the right sign, within 1.5 units in the last place ([jeannerod13], algorithm 1). */
+/* p q - r s with the right sign, within 1.5 units in the last place ([jeannerod13], algorithm 1).
+ */
 static double difference_of_products(double p, double q, double r, double s)
 {
     const double rs    = r * s;
@@ -78,10 +79,10 @@ bool bvh_query_try(bvh_query *query, const float *corner, size_t corner_stride, 
     }
     const double t = (e.u * a.z + e.v * b.z + e.w * c.z) / det * ray->inverse_dz;
 
-    const bool after  = t > query->t_after ||
-                        (t == query->t_after && triangle > query->triangle_after);
-    const bool before = t < query->best_t ||
-                        (t == query->best_t && triangle < query->best_triangle);
+    const bool after =
+        t > query->t_after || (t == query->t_after && triangle > query->triangle_after);
+    const bool before =
+        t < query->best_t || (t == query->best_t && triangle < query->best_triangle);
     if (!after || !before) {
         return false;
     }

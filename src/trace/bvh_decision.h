@@ -1,7 +1,8 @@
 /* bvh_decision.h - whether a ray meets a triangle: the one test that every answer rests on.
  *
  * Everything here is IEEE double arithmetic in a fixed order, without contraction, on the
- * triangle's nine floats: the same bits everywhere.  The steps are derived in docs/exact-hits.md. */
+ * triangle's nine floats: the same bits everywhere.  The steps are derived in docs/exact-hits.md.
+ */
 #ifndef ASSAY_TRACE_BVH_DECISION_H
 #define ASSAY_TRACE_BVH_DECISION_H
 
@@ -15,12 +16,12 @@
 /* A ray's own frame: axes permuted so that z is the largest component of the direction, then
  * sheared so that the ray is the z axis [woop13]. */
 typedef struct {
-    uint32_t axis[3];     /* the world axes of x, y, z                                        */
-    double   o[3];        /* origin, permuted                                                 */
-    double   sx, sy;      /* dx / dz, dy / dz                                                 */
+    uint32_t axis[3]; /* the world axes of x, y, z                                        */
+    double   o[3];    /* origin, permuted                                                 */
+    double   sx, sy;  /* dx / dz, dy / dz                                                 */
     double   inverse_dz, abs_dz;
-    double   magnitude;   /* M = scene extent + max |o|, m                                    */
-    double   residual;    /* largest residual of a plain decision, m                          */
+    double   magnitude; /* M = scene extent + max |o|, m                                    */
+    double   residual;  /* largest residual of a plain decision, m                          */
 } bvh_shear;
 
 /* A query under way: its ray and the best hit so far. */
@@ -60,10 +61,11 @@ static inline void bvh_query_start(bvh_query *q, const assay_bvh *bvh, const ass
                            bvh_load_alone(&ray->direction.z)};
     const double   o[3] = {bvh_load_alone(&ray->origin.x), bvh_load_alone(&ray->origin.y),
                            bvh_load_alone(&ray->origin.z)};
-    const uint32_t kz = bvh_largest_axis(fabs(d[0]), fabs(d[1]), fabs(d[2]));
-    const uint32_t kx = 0x09U >> 2 * kz & 3U, ky = 0x12U >> 2 * kz & 3U; /* the next, the one after */
-    const double   ox = fabs(o[0]), oy = fabs(o[1]), oz = fabs(o[2]);
-    const double   oxy = ox > oy ? ox : oy;
+    const uint32_t kz   = bvh_largest_axis(fabs(d[0]), fabs(d[1]), fabs(d[2]));
+    const uint32_t kx   = 0x09U >> 2 * kz & 3U,
+                   ky   = 0x12U >> 2 * kz & 3U; /* the next, the one after */
+    const double ox = fabs(o[0]), oy = fabs(o[1]), oz = fabs(o[2]);
+    const double oxy = ox > oy ? ox : oy;
 
     q->shear.axis[0]    = kx;
     q->shear.axis[1]    = ky;

@@ -1,8 +1,8 @@
 /* bvh_kernel.h - the walk in float vectors, compiled once for each instruction set.
  *
  * The including file defines the vectors, and a bvh_kernel of `closest` and `occluded`:
- *   v8, v8_load, v8_set1, v8_multiply_subtract, v8_min, v8_max, v8_store, v8_less_equal (8-bit mask)
- *   v4, v4_load, v4_set1, v4_subtract, v4_multiply, v4_multiply_add (a b + c),
+ *   v8, v8_load, v8_set1, v8_multiply_subtract, v8_min, v8_max, v8_store, v8_less_equal (8-bit
+ * mask) v4, v4_load, v4_set1, v4_subtract, v4_multiply, v4_multiply_add (a b + c),
  *   v4_multiply_subtract (a b - c), v4_negative_multiply_add (c - a b), v4_min, v4_max, v4_negate,
  *   v4_less_equal (4-bit mask)
  * Multiplying and adding may round once or twice: nothing here decides.  Boxes and filter only pass
@@ -25,17 +25,10 @@ typedef struct {
     double scale; /* the largest component of the direction, as a float */
 } box_ray;
 
-/* The ray as the filter sees it: sheared, with the error's bound slope * extent + offset. */
 typedef struct {
-    float  o[3], sx, sy, slope, offset;
-    size_t axis[3]; /* in floats from a leaf corner's x */
-} filter_ray;
-
-typedef struct {
-    bvh_query  query;
-    box_ray    boxes;
-    filter_ray filter;
-    float      tau_best; /* not below that of the best hit */
+    bvh_query query;
+    box_ray   boxes;
+    float     tau_best; /* not below that of the best hit */
 } walk_state;
 
 static inline float tau_above(double tau)
@@ -85,15 +78,6 @@ static inline bool walk_start(walk_state *s, const assay_bvh *bvh, const assay_r
         return false;
     }
     start_boxes(&s->boxes, bvh, ray, m);
-    const double error = bvh->tuning.filter_margin * m;
-    for (int k = 0; k < 3; k++) {
-        s->filter.o[k]    = (float)shear->o[k];
-        s->filter.axis[k] = (size_t)shear->axis[k] * BVH_LEAF_SIZE;
-    }
-    s->filter.sx       = (float)shear->sx;
-    s->filter.sy       = (float)shear->sy;
-    s->filter.slope    = (float)(6.0 * error);
-    s->filter.offset   = (float)(6.0 * error * error + filter_floor);
     s->boxes.tau_after = tau_below(s->query.t_after * s->boxes.scale);
     s->tau_best        = tau_above(s->query.best_t * s->boxes.scale);
     return true;
@@ -101,36 +85,56 @@ static inline bool walk_start(walk_state *s, const assay_bvh *bvh, const assay_r
 
 /* ---- leaves ---- */
 
+/* Four corners in the ray's frame, as `sheared` of bvh_decision.c. */
 typedef struct {
-    v4 x, y, z;
+    d4 x, y, z;
 } corners;
 
-static inline corners shear_corners(const filter_ray *r, const float *corner)
+static inline corners shear_corners(const bvh_shear *r, const float *corner)
 {
-    const v4 x = v4_subtract(v4_load(corner + r->axis[0]), v4_set1(r->o[0]));
-    const v4 y = v4_subtract(v4_load(corner + r->axis[1]), v4_set1(r->o[1]));
-    const v4 z = v4_subtract(v4_load(corner + r->axis[2]), v4_set1(r->o[2]));
-    return (corners){v4_negative_multiply_add(v4_set1(r->sx), z, x),
-                     v4_negative_multiply_add(v4_set1(r->sy), z, y), z};
+    const d4 x = d4_subtract(d4_load(corner + r->axis[0] * BVH_LEAF_SIZE), d4_set1(r->o[0]));
+    const d4 y = d4_subtract(d4_load(corner + r->axis[1] * BVH_LEAF_SIZE), d4_set1(r->o[1]));
+    const d4 z = d4_subtract(d4_load(corner + r->axis[2] * BVH_LEAF_SIZE), d4_set1(r->o[2]));
+    return (corners){d4_subtract(x, d4_multiply(d4_set1(r->sx), z)),
+                     d4_subtract(y, d4_multiply(d4_set1(r->sy), z)), z};
 }
 
-static inline v4 edge(corners p, corners q)
+static inline d4 edge(corners p, corners q)
 {
-    return v4_multiply_subtract(p.x, q.y, v4_multiply(p.y, q.x));
+    return d4_subtract(d4_multiply(p.x, q.y), d4_multiply(p.y, q.x));
 }
 
-/* Lanes whose triangle the decision might accept. */
-static inline unsigned filter_leaf(const filter_ray *r, const bvh_leaf *leaf)
+static inline d4 combine(d4 u, d4 v, d4 w, d4 a, d4 b, d4 c)
 {
-    const corners  a = shear_corners(r, leaf->vertex[0][0]);
-    const corners  b = shear_corners(r, leaf->vertex[1][0]);
-    const corners  c = shear_corners(r, leaf->vertex[2][0]);
-    const v4       u = edge(c, b), v = edge(a, c), w = edge(b, a);
-    const v4       low   = v4_min(v4_min(u, v), w);
-    const v4       high  = v4_max(v4_max(u, v), w);
-    const v4       bound = v4_multiply_add(v4_set1(r->slope), v4_load(leaf->extent),
-                                           v4_set1(r->offset));
-    return v4_less_equal(v4_min(v4_negate(low), high), bound);
+    return d4_add(d4_add(d4_multiply(u, a), d4_multiply(v, b)), d4_multiply(w, c));
+}
+
+/* Lanes whose triangle the decision must see: those that it would let compete, and those that it
+ * would refine.  The same operations as the decision's, so the same bits. */
+static inline unsigned candidates(const bvh_query *q, const bvh_leaf *leaf)
+{
+    const bvh_shear *r = &q->shear;
+    const corners    a = shear_corners(r, leaf->vertex[0][0]);
+    const corners    b = shear_corners(r, leaf->vertex[1][0]);
+    const corners    c = shear_corners(r, leaf->vertex[2][0]);
+    const d4         u = edge(c, b), v = edge(a, c), w = edge(b, a);
+    const d4         low  = d4_min(d4_min(u, v), w);
+    const d4         high = d4_max(d4_max(u, v), w);
+    const unsigned   enclosing =
+        d4_or_mask(d4_greater_equal(low, d4_set1(0.0)), d4_greater_equal(d4_set1(0.0), high));
+    if (!enclosing) {
+        return 0;
+    }
+    const d4 det   = d4_add(d4_add(u, v), w);
+    const d4 limit = d4_multiply(d4_set1(r->residual), d4_absolute(det));
+    const d4 x     = d4_absolute(combine(u, v, w, a.x, b.x, c.x));
+    const d4 y     = d4_absolute(combine(u, v, w, a.y, b.y, c.y));
+    const d4 t =
+        d4_multiply(d4_divide(combine(u, v, w, a.z, b.z, c.z), det), d4_set1(r->inverse_dz));
+    const unsigned consistent = d4_and_mask(d4_greater(limit, x), d4_greater(limit, y));
+    const unsigned range      = d4_and_mask(d4_greater_equal(d4_set1(q->best_t), t),
+                                            d4_greater_equal(t, d4_set1(q->t_after)));
+    return enclosing & (range | ~consistent);
 }
 
 /* True when one of these triangles of the leaf became the best hit. */
@@ -150,7 +154,7 @@ __attribute__((noinline)) static bool try_lanes(walk_state *s, const bvh_leaf *l
 }
 static inline bool try_leaf(walk_state *s, const bvh_leaf *leaf)
 {
-    unsigned lanes = filter_leaf(&s->filter, leaf);
+    unsigned lanes = candidates(&s->query, leaf);
     return lanes && try_lanes(s, leaf, lanes);
 }
 
@@ -214,15 +218,15 @@ static inline float stack_entry(uint64_t item)
 }
 
 /* Pushes the children in `mask`, the nearest last; returns the new top. */
-static inline uint64_t *push_children(const assay_bvh *bvh, uint64_t *top, const bvh_node *node, const float *entry,
-                                      unsigned mask)
+static inline uint64_t *push_children(const assay_bvh *bvh, uint64_t *top, const bvh_node *node,
+                                      const float *entry, unsigned mask)
 {
     uint64_t *first = top;
     for (; mask; mask &= mask - 1) {
         const int      i    = __builtin_ctz(mask);
         const uint64_t item = stack_item(entry[i], node->child[i]);
         prefetch(bvh, node->child[i]);
-        uint64_t      *at   = top++;
+        uint64_t *at = top++;
         for (; at > first && at[-1] < item; at--) {
             *at = at[-1];
         }
@@ -244,9 +248,9 @@ static bool closest(const assay_bvh *bvh, const assay_ray *ray, assay_hit *hit_o
     uint32_t          reference = bvh->root;
     for (;;) {
         if (!(reference & BVH_LEAF_BIT)) {
-            const bvh_node *node = bvh_node_at(bvh, reference);
+            const bvh_node    *node = bvh_node_at(bvh, reference);
             _Alignas(32) float entry[BVH_WIDTH];
-            unsigned mask = meet_children(&boxes, node, tau_best, entry);
+            unsigned           mask = meet_children(&boxes, node, tau_best, entry);
             if (mask) {
                 const int i = __builtin_ctz(mask);
                 reference   = node->child[i];
@@ -270,7 +274,7 @@ static bool closest(const assay_bvh *bvh, const assay_ray *ray, assay_hit *hit_o
                 }
                 mask |= 1U << i | 1U << j;
                 top       = push_children(bvh, top, node, entry, mask);
-                reference = (uint32_t)*--top;
+                reference = (uint32_t) * --top;
                 continue;
             }
         } else if (try_leaf(&s, bvh_leaf_at(bvh, reference))) {
@@ -306,9 +310,9 @@ static bool occluded(const assay_bvh *bvh, const assay_ray *ray)
             }
             continue;
         }
-        const bvh_node *node = bvh_node_at(bvh, reference);
+        const bvh_node    *node = bvh_node_at(bvh, reference);
         _Alignas(32) float entry[BVH_WIDTH];
-        unsigned mask = meet_children(&boxes, node, tau_best, entry);
+        unsigned           mask = meet_children(&boxes, node, tau_best, entry);
         for (; mask; mask &= mask - 1) {
             *top++ = node->child[__builtin_ctz(mask)];
             prefetch(bvh, top[-1]);

@@ -34,7 +34,7 @@ static bool meets(const slabs *s, const bvh_query *query, const bvh_node *node, 
 {
     double near = -INFINITY, far = INFINITY;
     for (int k = 0; k < 3; k++) {
-        const double low  = ((double)node->plane[2 * k][i] - s->widening - s->o[k]) * s->inverse[k];
+        const double low = ((double)node->plane[2 * k][i] - s->widening - s->o[k]) * s->inverse[k];
         const double high =
             ((double)node->plane[2 * k + 1][i] + s->widening - s->o[k]) * s->inverse[k];
         near = fmax(near, s->inverse[k] > 0.0 ? low : high);
@@ -90,9 +90,6 @@ static bool occluded(const assay_bvh *bvh, const assay_ray *ray)
     return query.det != 0.0;
 }
 
-static bool supported(void)
-{
-    return true;
-}
+static bool supported(void) { return true; }
 
 const bvh_kernel bvh_kernel_double = {"double", supported, closest, occluded};

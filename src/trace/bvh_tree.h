@@ -28,12 +28,10 @@ typedef struct {
     uint32_t child[BVH_WIDTH];
 } bvh_node;
 
-/* Triangles side by side: vertex[corner][axis][lane].  An absent lane has extent NaN. */
+/* Triangles side by side: vertex[corner][axis][lane].  An absent lane is NaN. */
 typedef struct {
     float    vertex[3][3][BVH_LEAF_SIZE];
-    float    extent[BVH_LEAF_SIZE]; /* sum of the two largest sides of the box, rounded up, m */
     uint32_t triangle[BVH_LEAF_SIZE];
-    uint32_t unused[4];
 } bvh_leaf;
 
 _Static_assert(sizeof(bvh_node) % BVH_UNIT == 0, "a node is a whole number of units");
@@ -70,8 +68,8 @@ struct assay_bvh {
     unsigned char    *memory; /* NULL: no triangle that can be hit */
     uint64_t          bytes;
     uint32_t          root;
-    uint32_t          depth;  /* nodes on the longest way to a leaf                              */
-    double            extent; /* L: largest |coordinate| of a triangle that can be hit, m          */
+    uint32_t          depth; /* nodes on the longest way to a leaf                              */
+    double extent;           /* L: largest |coordinate| of a triangle that can be hit, m          */
 };
 
 static inline const bvh_node *bvh_node_at(const assay_bvh *bvh, uint32_t reference)

@@ -5,10 +5,7 @@ typedef struct {
     v4 a, b;
 } v8;
 
-static inline v8 v8_load(const float *p)
-{
-    return (v8){v4_load(p), v4_load(p + 4)};
-}
+static inline v8 v8_load(const float *p) { return (v8){v4_load(p), v4_load(p + 4)}; }
 static inline v8 v8_set1(float x)
 {
     const v4 v = v4_set1(x);
@@ -18,14 +15,8 @@ static inline v8 v8_multiply_subtract(v8 p, v8 q, v8 r)
 {
     return (v8){v4_multiply_subtract(p.a, q.a, r.a), v4_multiply_subtract(p.b, q.b, r.b)};
 }
-static inline v8 v8_min(v8 p, v8 q)
-{
-    return (v8){v4_min(p.a, q.a), v4_min(p.b, q.b)};
-}
-static inline v8 v8_max(v8 p, v8 q)
-{
-    return (v8){v4_max(p.a, q.a), v4_max(p.b, q.b)};
-}
+static inline v8   v8_min(v8 p, v8 q) { return (v8){v4_min(p.a, q.a), v4_min(p.b, q.b)}; }
+static inline v8   v8_max(v8 p, v8 q) { return (v8){v4_max(p.a, q.a), v4_max(p.b, q.b)}; }
 static inline void v8_store(float *p, v8 v)
 {
     v4_store(p, v.a);

@@ -81,25 +81,19 @@ static double infinite_power(const assay_scene *scene)
     return ASSAY_PI * radius * radius * rgb_luminance(fluence);
 }
 
-static bool triangle_emits(const assay_scene *scene, uint32_t triangle)
-{
-    return assay_material_emits(
-        &scene->materials[scene->shapes[scene->triangle_shape[triangle]].material]);
-}
-
 static assay_status find_emitters(assay_lights *lights)
 {
     const assay_scene *scene = lights->scene;
     uint32_t           count = 0;
     for (uint32_t i = 0; i < scene->triangle_count; i++) {
-        count += triangle_emits(scene, i);
+        count += assay_triangle_emits(scene, i);
     }
     lights->emitters = assay_allocate(scene->context, count, sizeof *lights->emitters);
     if (!lights->emitters) {
         return assay_fail_memory(scene->context, "the list of lights");
     }
     for (uint32_t i = 0; i < scene->triangle_count; i++) {
-        if (triangle_emits(scene, i)) {
+        if (assay_triangle_emits(scene, i)) {
             lights->emitters[lights->emitter_count++] = i;
         }
     }

@@ -6,9 +6,16 @@
 #ifndef ASSAY_TRACE_LIGHTS_H
 #define ASSAY_TRACE_LIGHTS_H
 
-#include "scene/scene_data.h"
+#include "scene/surface.h"
 
 typedef struct assay_lights assay_lights;
+
+/* Whether a triangle is a light: its material emits, and not for the camera alone. */
+static inline bool assay_triangle_emits(const assay_scene *scene, uint32_t triangle)
+{
+    const assay_shape *shape = &scene->shapes[scene->triangle_shape[triangle]];
+    return assay_material_emits(&scene->materials[shape->material]);
+}
 
 /* Of the scene at its current time, which is borrowed.  A scene without light is legal.
  * Errors: MEMORY. */

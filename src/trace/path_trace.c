@@ -178,6 +178,9 @@ static bool follow(path_walk *walk, assay_vertex *vertex, int bounce)
         return false;
     }
     walk->throughput = rgb_mul(walk->throughput, absorption(walk->medium, hit.t));
+    if (last && !assay_triangle_emits(walk->world->scene, hit.triangle)) {
+        return false;
+    }
     assay_vertex_at(walk->world, &hit, direction, vertex);
     const assay_rgb emission = emission_of(walk, vertex);
     if (!rgb_is_black(emission)) {

@@ -1,6 +1,6 @@
-/* gltf_document.h - the inside of a document; for gltf_writer.c and gltf_json.c alone. */
-#ifndef ASSAY_SCENES_GLTF_DOCUMENT_H
-#define ASSAY_SCENES_GLTF_DOCUMENT_H
+/* writer_document.h - the inside of a document; for gltf_writer.c and writer_json.c alone. */
+#ifndef ASSAY_SCENES_WRITER_DOCUMENT_H
+#define ASSAY_SCENES_WRITER_DOCUMENT_H
 
 #include "gltf_writer.h"
 

@@ -1,4 +1,4 @@
-/* gltf_json.c - the document as text: one short line an object, in the order of its indices.
+/* writer_json.c - the document as text: one short line an object, in the order of its indices.
  *
  * Invariant: the text depends on nothing but the document (the C locale's decimal point is the
  * program's default and is never changed). */
@@ -7,7 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "gltf_document.h"
+#include "writer_document.h"
 
 /* ---- small pieces ---- */
 
