@@ -10,29 +10,29 @@ extern "C" {
 
 /* Difference of one channel, candidate b against reference a, over pixels where both are finite. */
 typedef struct {
-    const char *channel;      /* borrowed from image a                                             */
-    uint64_t    pixels;       /* compared                                                          */
-    uint64_t    differing;    /* whose bits differ (NaN against NaN of any kind does not)          */
-    uint64_t    not_finite;   /* NaN or infinite in exactly one, or of other sign                  */
+    const char *channel;    /* borrowed from image a                                             */
+    uint64_t    pixels;     /* compared                                                          */
+    uint64_t    differing;  /* whose bits differ (NaN against NaN of any kind does not)          */
+    uint64_t    not_finite; /* NaN or infinite in exactly one, or of other sign                  */
     double      mean_a, mean_b;
-    double      max_abs;      /* largest |b - a|                                                   */
-    int         max_x, max_y; /* where                                                             */
-    double      rmse;         /* sqrt(mean (b - a)^2)                                              */
-    double      relative_rmse;/* sqrt(mean ((b - a)^2 / (a^2 + 1e-2 mean_a^2)))                    */
-    double      mean_error;   /* mean (b - a): bias                                                */
-    double      z_rms;        /* rms of (b - a) / sqrt(var_a + var_b) where both images carry the
-                                 channel's variance and it is > 0: 1 for two unbiased renders;
-                                 NaN where they do not carry it                                    */
+    double      max_abs;  /* largest |b - a|                                                   */
+    int    max_x, max_y;  /* where                                                             */
+    double rmse;          /* sqrt(mean (b - a)^2)                                              */
+    double relative_rmse; /* sqrt(mean ((b - a)^2 / (a^2 + 1e-2 mean_a^2)))                    */
+    double mean_error;    /* mean (b - a): bias                                                */
+    double z_rms;         /* rms of (b - a) / sqrt(var_a + var_b) where both images carry the
+                             channel's variance and it is > 0: 1 for two unbiased renders;
+                             NaN where they do not carry it                                    */
 } assay_channel_difference;
 
 typedef struct assay_comparison assay_comparison;
 
 /* Compares the channels that both images have.  Errors: ARGUMENT (sizes differ, no common channel),
  * MEMORY. */
-ASSAY_API assay_status assay_image_compare(const assay_image *a, const assay_image *b,
-                                           assay_comparison **comparison_out);
-ASSAY_API void         assay_comparison_destroy(assay_comparison *comparison);
-ASSAY_API int          assay_comparison_count(const assay_comparison *comparison);
+ASSAY_API assay_status             assay_image_compare(const assay_image *a, const assay_image *b,
+                                                       assay_comparison **comparison_out);
+ASSAY_API void                     assay_comparison_destroy(assay_comparison *comparison);
+ASSAY_API int                      assay_comparison_count(const assay_comparison *comparison);
 ASSAY_API assay_channel_difference assay_comparison_at(const assay_comparison *comparison,
                                                        int                     index);
 /* True where sizes, channel sets, and every bit of every pixel are the same. */

@@ -35,7 +35,7 @@ typedef struct {
 } assay_allocator;
 
 typedef struct {
-    int                     threads;   /* worker threads, 0 = one a processor, at most 1024; */
+    int threads;                       /* worker threads, 0 = one a processor, at most 1024; */
                                        /* never changes a result                             */
     assay_allocator         allocator; /* all NULL: malloc and free                          */
     assay_log_callback      log;       /* may be NULL                                        */
@@ -58,8 +58,8 @@ ASSAY_API int assay_context_threads(const assay_context *context);
 /* Releases a text that a call made; NULL is legal. */
 ASSAY_API void assay_text_destroy(assay_context *context, char *text);
 
-/* Writes a text to a file, beside and then renamed: on any error the file of that name is as it was.
- * Errors: WRITE, MEMORY. */
+/* Writes a text to a file, beside and then renamed: on any error the file of that name is as it
+ * was. Errors: WRITE, MEMORY. */
 ASSAY_API assay_status assay_text_write(assay_context *context, const char *path, const char *text);
 
 /* "0.1.0"; borrowed. */

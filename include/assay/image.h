@@ -28,7 +28,7 @@ typedef struct {
 } assay_channel;
 
 /* Largest width and height, and largest width * height, of any image made or read. */
-#define ASSAY_IMAGE_MAX_SIDE   65536
+#define ASSAY_IMAGE_MAX_SIDE 65536
 #define ASSAY_IMAGE_MAX_PIXELS (1u << 28)
 
 /* An image without channels.  Errors: ARGUMENT (a side 0 or too large), MEMORY. */
@@ -56,8 +56,8 @@ ASSAY_API assay_status assay_image_set_attribute(assay_image *image, const char 
                                                  const char *value);
 ASSAY_API const char  *assay_image_get_attribute(const assay_image *image, const char *name);
 ASSAY_API int          assay_image_attribute_count(const assay_image *image);
-ASSAY_API void         assay_image_attribute_at(const assay_image *image, int index,
-                                                const char **name_out, const char **value_out);
+ASSAY_API void assay_image_attribute_at(const assay_image *image, int index, const char **name_out,
+                                        const char **value_out);
 
 /* SHA-256 (64 hexadecimal digits and a NUL) of size, channel names, types and pixels; attributes do
  * not count.  The same pixels give the same digest on every machine. */

@@ -10,25 +10,25 @@ extern "C" {
 #endif
 
 typedef enum {
-    ASSAY_PARAM_INT,    /* whole number in [minimum, maximum]; "inf" where the maximum is
-                           ASSAY_PARAM_INF                                                     */
-    ASSAY_PARAM_REAL,   /* finite number in [minimum, maximum]                                 */
-    ASSAY_PARAM_BOOL,   /* on | off                                                            */
-    ASSAY_PARAM_CHOICE  /* one of the words of `choices`, separated by '|'                     */
+    ASSAY_PARAM_INT,   /* whole number in [minimum, maximum]; "inf" where the maximum is
+                          ASSAY_PARAM_INF                                                     */
+    ASSAY_PARAM_REAL,  /* finite number in [minimum, maximum]                                 */
+    ASSAY_PARAM_BOOL,  /* on | off                                                            */
+    ASSAY_PARAM_CHOICE /* one of the words of `choices`, separated by '|'                     */
 } assay_param_type;
 
 /* Stands for "inf" in a whole number: exact in a double. */
 #define ASSAY_PARAM_INF 2147483647.0
 
 typedef struct {
-    const char      *name;          /* "roulette_depth"; NULL ends a table  */
+    const char      *name; /* "roulette_depth"; NULL ends a table  */
     assay_param_type type;
     const char      *unit;          /* "" where it has none                 */
     const char      *default_value; /* as the user would type it            */
     double           minimum, maximum;
-    const char      *choices;       /* "nee|bsdf|mis", or NULL              */
-    const char      *summary;       /* one sentence                         */
-    const char      *source;        /* paper and equation, or ""            */
+    const char      *choices; /* "nee|bsdf|mis", or NULL              */
+    const char      *summary; /* one sentence                         */
+    const char      *source;  /* paper and equation, or ""            */
 } assay_param_desc;
 
 typedef struct assay_params assay_params;

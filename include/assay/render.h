@@ -36,12 +36,14 @@ ASSAY_API assay_status assay_methods_json(assay_context *context, const char *me
 /* ---- images ---- */
 
 typedef struct {
-    int         width, height;   /* pixels                                                        */
-    const char *camera;          /* name or decimal index; NULL: the first; a scene without one
-                                    is framed by a camera of its own                               */
-    uint64_t    seed;            /* of the random numbers                                         */
-    const char *layers;          /* comma-separated groups "color,gbuffer,split,irradiance" or
-                                    "all"; NULL: "all".  See docs/methods/path.md                 */
+    int         width, height; /* pixels                                                        */
+    const char *camera;        /* name or decimal index; NULL: the first; a scene without one
+                                  is framed by a camera of its own                               */
+    uint64_t    seed;          /* of the random numbers                                         */
+    const char *layers;        /* comma-separated groups "color,gbuffer,split,irradiance" or
+                                  "all"; NULL: "all".  See docs/methods/path.md                 */
+    const char *dump;          /* folder to make for the stages, a bundle (docs/bundles.md), or
+                                  NULL; must not be there yet                                   */
 } assay_render_options;
 
 /* Defaults: 512 x 512, first camera, seed 0, all layers. */
@@ -50,27 +52,27 @@ ASSAY_API assay_render_options assay_render_options_default(void);
 /* What a render did.  Counts are exact and the same on every machine; seconds are not. */
 typedef struct {
     uint64_t camera_rays, scatter_rays, shadow_rays; /* rays traced, by kind                      */
-    uint64_t samples;                 /* camera paths                                              */
-    uint64_t spp_min, spp_max;        /* over pixels                                               */
-    double   relative_error;          /* mean over pixels of the standard error of the pixel's
-                                         luminance / the image's mean luminance                   */
-    double   seconds_build, seconds_render; /* wall                                                */
-    uint64_t peak_memory;             /* bytes, of the process                                     */
+    uint64_t samples;          /* camera paths                                              */
+    uint64_t spp_min, spp_max; /* over pixels                                               */
+    double   relative_error;   /* mean over pixels of the standard error of the pixel's
+                                  luminance / the image's mean luminance                   */
+    double seconds_build, seconds_render; /* wall                                                */
+    uint64_t peak_memory; /* bytes, of the process                                     */
     uint64_t bvh_bytes, geometry_bytes, texture_bytes;
     int      threads;
 } assay_render_stats;
 
 /* Renders the scene at its current time.  stats_out may be NULL.
- * Errors: ARGUMENT, MEMORY, LIMIT, CANCELLED. */
+ * Errors: ARGUMENT, MEMORY, LIMIT, WRITE (the dump), DOMAIN (light that is no finite number),
+ * CANCELLED. */
 ASSAY_API assay_status assay_render(assay_scene *scene, const char *method,
                                     const assay_params *params, const assay_render_options *options,
                                     assay_image **image_out, assay_render_stats *stats_out);
 
-/* Irradiance at points.  points: rows of x y z nx ny nz (m; normals are normalised).  The result has
- * a row a point; its columns are named by assay_probe_column_name.
- * Gradients are central differences with common random numbers.
- * Errors: ARGUMENT (columns other than 6, a zero normal), DOMAIN (not finite), UNSUPPORTED (the
- * method has no probes), MEMORY, CANCELLED. */
+/* Irradiance at points.  points: rows of x y z nx ny nz (m; normals are normalised).  The result
+ * has a row a point; its columns are named by assay_probe_column_name. Gradients are central
+ * differences with common random numbers. Errors: ARGUMENT (columns other than 6, a zero normal),
+ * DOMAIN (not finite), UNSUPPORTED (the method has no probes), MEMORY, CANCELLED. */
 ASSAY_API assay_status assay_render_probes(assay_scene *scene, const char *method,
                                            const assay_params *params, uint64_t seed,
                                            const assay_array *points, assay_array **result_out,
@@ -79,7 +81,7 @@ ASSAY_API assay_status assay_render_probes(assay_scene *scene, const char *metho
  * "EDirect" and "EIndirect" likewise), and with gradients 36 more ("dE/dx.R": W/m3, "dE/dax.R":
  * W/(m2 rad) about the x axis, ..., each with its variance). */
 #define ASSAY_PROBE_COLUMNS_PLAIN 18
-#define ASSAY_PROBE_COLUMNS       54
+#define ASSAY_PROBE_COLUMNS 54
 /* The name of a column.  False, and name_out untouched, outside [0, ASSAY_PROBE_COLUMNS). */
 ASSAY_API bool assay_probe_column_name(int column, char name_out[32]);
 

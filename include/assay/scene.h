@@ -17,15 +17,15 @@ extern "C" {
 typedef struct assay_scene assay_scene;
 
 typedef struct {
-    int         scene_index;          /* which glTF scene; -1: the file's default, else 0          */
-    const char *environment_path;     /* latitude-longitude map (.exr or .hdr), or NULL            */
-    double      environment_scale;    /* radiance multiplier, finite, >= 0                         */
-    double      environment_rotation; /* radians about +Y, counter-clockwise seen from above       */
-    assay_rgb   background;           /* constant radiance of rays that leave the scene; used only
-                                         where there is no environment map; finite, >= 0          */
-    bool        force_diffuse;        /* every surface a two-sided Lambertian of its base colour   */
-    bool        solid_transmission;   /* transmissive materials without KHR_materials_volume are
-                                         taken as solid (refracting) instead of thin-walled        */
+    int         scene_index;        /* which glTF scene; -1: the file's default, else 0          */
+    const char *environment_path;   /* latitude-longitude map (.exr or .hdr), or NULL            */
+    double      environment_scale;  /* radiance multiplier, finite, >= 0                         */
+    double    environment_rotation; /* radians about +Y, counter-clockwise seen from above       */
+    assay_rgb background;           /* constant radiance of rays that leave the scene; used only
+                                       where there is no environment map; finite, >= 0          */
+    bool force_diffuse;             /* every surface a two-sided Lambertian of its base colour   */
+    bool solid_transmission;        /* transmissive materials without KHR_materials_volume are
+                                       taken as solid (refracting) instead of thin-walled        */
 } assay_scene_options;
 
 /* Defaults: scene -1, no environment, scale 1, rotation 0, black, false, false. */
@@ -46,15 +46,15 @@ ASSAY_API assay_status assay_scene_set_time(assay_scene *scene, double seconds);
 
 /* What was loaded. Strings are borrowed from the scene. */
 typedef struct {
-    uint32_t   triangles, vertices; /* after instancing, of the current time                       */
-    uint32_t   meshes;              /* distinct glTF meshes                                        */
-    uint32_t   instances;           /* glTF nodes of the scene with a mesh                         */
-    uint32_t   materials, textures, images, nodes, skins, animations, cameras;
-    uint32_t   point_lights, spot_lights, directional_lights, emissive_triangles;
-    bool       has_environment;
-    bool       has_light;    /* anything at all that emits, the background included                */
-    double     duration;     /* s, of the longest animation; 0 without                             */
-    assay_vec3 bounds_min, bounds_max; /* m; all zero where there is no triangle                   */
+    uint32_t triangles, vertices; /* after instancing, of the current time                       */
+    uint32_t meshes;              /* distinct glTF meshes                                        */
+    uint32_t instances;           /* glTF nodes of the scene with a mesh                         */
+    uint32_t materials, textures, images, nodes, skins, animations, cameras;
+    uint32_t point_lights, spot_lights, directional_lights, emissive_triangles;
+    bool     has_environment;
+    bool     has_light; /* anything at all that emits, the background included                */
+    double   duration;  /* s, of the longest animation; 0 without                             */
+    assay_vec3 bounds_min, bounds_max; /* m; all zero where there is no triangle */
     uint32_t   warnings;
 } assay_scene_info;
 

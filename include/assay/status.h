@@ -16,16 +16,16 @@ extern "C" {
  * The values are stable. */
 typedef enum {
     ASSAY_OK              = 0,
-    ASSAY_ERR_ARGUMENT    = 1,  /* a parameter or option is unknown or out of its range         */
-    ASSAY_ERR_NOT_FOUND   = 2,  /* a file is missing or cannot be read                          */
-    ASSAY_ERR_FORMAT      = 3,  /* a file is malformed                                          */
-    ASSAY_ERR_UNSUPPORTED = 4,  /* a file is well-formed, but asks for what assay does not do   */
-    ASSAY_ERR_LIMIT       = 5,  /* a file or request is larger than a stated limit              */
-    ASSAY_ERR_MEMORY      = 6,  /* an allocation failed                                         */
-    ASSAY_ERR_WRITE       = 7,  /* an output cannot be written                                  */
-    ASSAY_ERR_DOMAIN      = 8,  /* a number is NaN, infinite, or outside a function's domain    */
-    ASSAY_ERR_CANCELLED   = 9,  /* the progress callback asked to stop                          */
-    ASSAY_ERR_INTERNAL    = 10  /* a broken invariant: please report it                         */
+    ASSAY_ERR_ARGUMENT    = 1, /* a parameter or option is unknown or out of its range         */
+    ASSAY_ERR_NOT_FOUND   = 2, /* a file is missing or cannot be read                          */
+    ASSAY_ERR_FORMAT      = 3, /* a file is malformed                                          */
+    ASSAY_ERR_UNSUPPORTED = 4, /* a file is well-formed, but asks for what assay does not do   */
+    ASSAY_ERR_LIMIT       = 5, /* a file or request is larger than a stated limit              */
+    ASSAY_ERR_MEMORY      = 6, /* an allocation failed                                         */
+    ASSAY_ERR_WRITE       = 7, /* an output cannot be written                                  */
+    ASSAY_ERR_DOMAIN      = 8, /* a number is NaN, infinite, or outside a function's domain    */
+    ASSAY_ERR_CANCELLED   = 9, /* the progress callback asked to stop                          */
+    ASSAY_ERR_INTERNAL    = 10 /* a broken invariant: please report it                         */
 } assay_status;
 
 /* The status in a few words, never NULL; "unknown status" outside the enumeration. */

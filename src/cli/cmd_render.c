@@ -97,18 +97,26 @@ static assay_status write_stats(const render_job *job, const char *path)
 
 /* ---- images and probes ---- */
 
-static assay_status render_image(render_job *job, const char *output, const char *png)
+/* Files of one frame; empty where not asked for. */
+enum { PATH_SIZE = 4096 };
+typedef struct {
+    char output[PATH_SIZE], png[PATH_SIZE], stats[PATH_SIZE], dump[PATH_SIZE];
+} frame_files;
+
+static assay_status render_image(render_job *job, const frame_files *files)
 {
-    const cli_render_request *r     = job->request;
-    assay_image              *image = NULL;
-    assay_status              status =
-        assay_render(job->scene, r->method, job->params, &r->render, &image, &job->stats);
+    const cli_render_request *r       = job->request;
+    assay_render_options      options = r->render;
+    assay_image              *image   = NULL;
+    options.dump                      = files->dump[0] ? files->dump : NULL;
+    assay_status status =
+        assay_render(job->scene, r->method, job->params, &options, &image, &job->stats);
     const double start = now();
     if (status == ASSAY_OK) {
-        status = assay_image_write_exr(image, output);
+        status = assay_image_write_exr(image, files->output);
     }
-    if (status == ASSAY_OK && png) {
-        status = assay_image_write_png(image, "", r->exposure, png);
+    if (status == ASSAY_OK && files->png[0]) {
+        status = assay_image_write_png(image, "", r->exposure, files->png);
     }
     job->seconds_write = now() - start;
     assay_image_destroy(image);
@@ -150,28 +158,32 @@ static void say_done(const render_job *job, const char *output)
     fputc('\n', stderr);
 }
 
+static bool name_file(const cli_render_request *request, const char *pattern, long frame,
+                      char out[PATH_SIZE])
+{
+    out[0] = '\0';
+    return !pattern || cli_frame_name(request, pattern, frame, out, PATH_SIZE);
+}
+
 static assay_status render_frame(render_job *job, long frame)
 {
-    enum { PATH_SIZE = 4096 };
     const cli_render_request *r = job->request;
-    char                      output[PATH_SIZE], png[PATH_SIZE] = "", stats[PATH_SIZE] = "";
-    if (!cli_frame_name(r, r->output, frame, output, sizeof output) ||
-        (r->png && !cli_frame_name(r, r->png, frame, png, sizeof png)) ||
-        (r->stats && !cli_frame_name(r, r->stats, frame, stats, sizeof stats))) {
+    frame_files               files;
+    if (!name_file(r, r->output, frame, files.output) || !name_file(r, r->png, frame, files.png) ||
+        !name_file(r, r->stats, frame, files.stats) || !name_file(r, r->dump, frame, files.dump)) {
         fprintf(stderr, "assay render: a name of a frame is too long\n");
         return ASSAY_ERR_ARGUMENT;
     }
     const double time   = r->has_frames ? (double)frame / r->fps : r->time;
     assay_status status = assay_scene_set_time(job->scene, time);
     if (status == ASSAY_OK) {
-        status =
-            r->points ? render_points(job, output) : render_image(job, output, r->png ? png : NULL);
+        status = r->points ? render_points(job, files.output) : render_image(job, &files);
     }
     if (status == ASSAY_OK && r->stats) {
-        status = write_stats(job, stats);
+        status = write_stats(job, files.stats);
     }
     if (status == ASSAY_OK) {
-        say_done(job, output);
+        say_done(job, files.output);
     }
     return status;
 }

@@ -25,6 +25,7 @@ enum {
     OPT_FRAMES,
     OPT_FPS,
     OPT_STATS,
+    OPT_DUMP,
     OPT_THREADS,
     OPT_QUIET,
     OPT_HELP
@@ -45,6 +46,7 @@ static const cli_option OPTIONS[] = {
     [OPT_FRAMES]   = {"frames", 0, "A:B", "frames A to B; a run of # in a name is the number"},
     [OPT_FPS]      = {"fps", 0, "F", "frames a second (default 24)"},
     [OPT_STATS]    = {"stats", 0, "F.json", "write rays, samples, seconds, memory"},
+    [OPT_DUMP]     = {"dump", 0, "DIR", "write every stage as arrays into a new folder"},
     [OPT_THREADS]  = {"threads", 0, "N", "0: one a processor (default); never changes a bit"},
     [OPT_QUIET]    = {"quiet", 'q', NULL, "no progress, no warnings"},
     [OPT_HELP]     = {"help", 'h', NULL, "this text"},
@@ -121,6 +123,7 @@ static const char *take(void *user, int index, const char *value)
     case OPT_LAYERS: request->render.layers = value; return NULL;
     case OPT_POINTS: request->points = value; return NULL;
     case OPT_STATS: request->stats = value; return NULL;
+    case OPT_DUMP: request->dump = value; return NULL;
     case OPT_QUIET: request->quiet = true; return NULL;
     case OPT_HELP: request->help = true; return NULL;
     default: break;
@@ -161,8 +164,8 @@ bool cli_render_request_parse(int count, char **argv, cli_render_request *reques
     const char *missing = request->help      ? NULL
                           : !request->scene  ? "no scene given"
                           : !request->output ? "no output given (-o OUT.exr)"
-                          : request->points && request->png
-                              ? "--png has no picture to draw with --points"
+                          : request->points && (request->png || request->dump)
+                              ? "--points makes a table alone: no --png, no --dump"
                               : NULL;
     if (missing) {
         fprintf(stderr, "assay render: %s (assay render --help tells how)\n", missing);

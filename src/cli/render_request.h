@@ -7,7 +7,7 @@
 enum { CLI_MAX_PARAMS = 64 };
 
 typedef struct {
-    const char          *scene, *method, *output, *png, *points, *stats;
+    const char          *scene, *method, *output, *png, *points, *stats, *dump;
     assay_scene_options  scene_options;
     assay_render_options render;
     struct {

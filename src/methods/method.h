@@ -7,6 +7,7 @@
 #define ASSAY_METHODS_METHOD_H
 
 #include "assay/render.h"
+#include "io/bundle.h"
 #include "io/film.h"
 #include "trace/world.h"
 
@@ -18,6 +19,7 @@ typedef struct {
     int                 width, height;
     uint64_t            seed;
     assay_layer_set     layers;
+    assay_bundle       *dump; /* where a method puts its stages, or NULL */
 } assay_frame;
 
 /* Points at which irradiance is asked. */

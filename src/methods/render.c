@@ -8,6 +8,7 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/process.h"
+#include "methods/dump.h"
 #include "methods/run.h"
 
 assay_render_options assay_render_options_default(void)
@@ -117,32 +118,52 @@ static assay_status render_work(const assay_method *method, void *state, const a
     return method->render(state, frame, user, counts);
 }
 
-static assay_status render_frame(const assay_method *method, const assay_params *params,
-                                 const assay_frame *frame, assay_image **image_out,
-                                 assay_render_stats *stats)
+static assay_status make_image(const assay_method *method, const assay_params *params,
+                               const assay_frame *frame, assay_film *film, assay_image **image_out,
+                               assay_ray_counts *counts)
 {
-    assay_film      *film   = NULL;
-    assay_image     *image  = NULL;
-    assay_ray_counts counts = {0};
-    const double     start  = assay_process_seconds();
-    assay_status     status =
-        assay_film_create(frame->context, frame->width, frame->height, frame->layers, &film);
-    if (status == ASSAY_OK) {
-        status = assay_run_method(method, params, frame, render_work, film, &counts);
-    }
+    assay_image *image  = NULL;
+    assay_status status = assay_run_method(method, params, frame, render_work, film, counts);
     if (status == ASSAY_OK) {
         status = assay_film_develop(film, &image);
     }
     if (status == ASSAY_OK) {
         status = describe(image, frame->world->scene, method, params, frame);
     }
+    if (status == ASSAY_OK && frame->dump) {
+        status = assay_dump_image(frame->context, image, frame->dump);
+    }
+    if (status == ASSAY_OK && frame->dump) {
+        status = assay_bundle_finish(frame->dump);
+    }
+    if (status != ASSAY_OK) {
+        assay_image_destroy(image);
+        return status;
+    }
+    *image_out = image;
+    return ASSAY_OK;
+}
+
+static assay_status render_frame(const assay_method *method, const assay_params *params,
+                                 assay_frame *frame, const char *dump, assay_image **image_out,
+                                 assay_render_stats *stats)
+{
+    assay_film      *film   = NULL;
+    assay_ray_counts counts = {0};
+    const double     start  = assay_process_seconds();
+    assay_status     status =
+        assay_film_create(frame->context, frame->width, frame->height, frame->layers, &film);
+    if (status == ASSAY_OK && dump) {
+        status = assay_bundle_create(frame->context, dump, &frame->dump);
+    }
+    if (status == ASSAY_OK) {
+        status = make_image(method, params, frame, film, image_out, &counts);
+    }
     if (status == ASSAY_OK) {
         stats->seconds_render = assay_process_seconds() - start;
         assay_run_fill_stats(film, frame, &counts, stats);
-        *image_out = image;
-    } else {
-        assay_image_destroy(image);
     }
+    assay_bundle_destroy(frame->dump);
     assay_film_destroy(film);
     return status;
 }
@@ -178,7 +199,7 @@ assay_status assay_render(assay_scene *scene, const char *method_name, const ass
     }
     if (status == ASSAY_OK) {
         frame.world = world;
-        status      = render_frame(method, params, &frame, image_out, &stats);
+        status      = render_frame(method, params, &frame, options->dump, image_out, &stats);
     }
     assay_world_destroy(world);
     if (status == ASSAY_OK && stats_out) {
