@@ -133,14 +133,14 @@ static assay_status list(assay_bundle *bundle, const char *name, const char *uni
     if (status != ASSAY_OK) {
         return status;
     }
-    cJSON     *entry = assay_json_append_object(bundle->arrays);
-    cJSON     *sizes = entry ? cJSON_AddArrayToObject(entry, "shape") : NULL;
-    const bool ok    = sizes && cJSON_AddStringToObject(entry, "name", name) &&
+    cJSON *entry    = assay_json_append_object(bundle->arrays);
+    cJSON *sizes    = NULL;
+    bool   complete = entry && cJSON_AddStringToObject(entry, "name", name) &&
                     cJSON_AddStringToObject(entry, "file", path + strlen(bundle->folder) + 1) &&
                     cJSON_AddStringToObject(entry, "unit", unit) &&
                     cJSON_AddStringToObject(entry, "dtype", dtype) &&
+                    (sizes = cJSON_AddArrayToObject(entry, "shape")) &&
                     cJSON_AddStringToObject(entry, "sha256", digest);
-    bool complete = ok;
     for (int i = 0; i < 3 && shape[i] > 0.0 && complete; i++) {
         complete = cJSON_AddItemToArray(sizes, cJSON_CreateNumber(shape[i]));
     }

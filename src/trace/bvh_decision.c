@@ -79,11 +79,7 @@ bool bvh_query_try(bvh_query *query, const float *corner, size_t corner_stride, 
     }
     const double t = (e.u * a.z + e.v * b.z + e.w * c.z) / det * ray->inverse_dz;
 
-    const bool after =
-        t > query->t_after || (t == query->t_after && triangle > query->triangle_after);
-    const bool before =
-        t < query->best_t || (t == query->best_t && triangle < query->best_triangle);
-    if (!after || !before) {
+    if (!bvh_query_in_order(query, t, triangle)) {
         return false;
     }
     query->best_t        = t;

@@ -86,6 +86,13 @@ static inline void bvh_query_start(bvh_query *q, const assay_bvh *bvh, const ass
     q->v = q->w = q->det = 0.0;
 }
 
+/* Whether a hit lies after the ray's start and before the best so far, in the order (t, triangle). */
+static inline bool bvh_query_in_order(const bvh_query *q, double t, uint32_t triangle)
+{
+    return (t > q->t_after || (t == q->t_after && triangle > q->triangle_after)) &&
+           (t < q->best_t || (t == q->best_t && triangle < q->best_triangle));
+}
+
 /* Lets a triangle compete for the first hit; true when it became the best so far.
  * Coordinate k of corner c is at corner[c * corner_stride + k * axis_stride]. */
 bool bvh_query_try(bvh_query *query, const float *corner, size_t corner_stride, size_t axis_stride,

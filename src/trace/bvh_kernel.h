@@ -13,7 +13,6 @@ static const float  least_step   = 0x1p-40F; /* of a direction against its large
 static const double range_low    = 0x1p-60;  /* M (m) and the direction's largest component;  */
 static const double range_high   = 0x1p60;   /* outside is left to the double kernel          */
 static const double slack        = 0x1p-22;  /* of distances rounded to float                 */
-static const double least_slack  = 0x1p-100;
 static const double filter_floor = 0x1p-140; /* products may vanish by this much, m2          */
 
 /* The ray as the boxes see it: by tau = t scale, in the world's axes. */
@@ -22,7 +21,8 @@ typedef struct {
     _Alignas(16) float near[4], far[4]; /* planes to tau: plane * inverse - near */
     size_t near_plane[3];               /* which of bvh_node.plane is met first  */
     float  tau_after;
-    double scale; /* the largest component of the direction, as a float */
+    double scale;       /* the largest component of the direction, as a float      */
+    double scale_above; /* the same, enlarged: (float)(t * scale_above) >= tau     */
 } box_ray;
 
 typedef struct {
@@ -30,16 +30,6 @@ typedef struct {
     box_ray   boxes;
     float     tau_best; /* not below that of the best hit */
 } walk_state;
-
-static inline float tau_above(double tau)
-{
-    return (float)(tau + (fabs(tau) * slack + least_slack));
-}
-
-static inline float tau_below(double tau)
-{
-    return (float)(tau - (fabs(tau) * slack + least_slack));
-}
 
 static inline v4 v4_of(const assay_vec3 *v)
 {
@@ -64,7 +54,8 @@ static inline void start_boxes(box_ray *r, const assay_bvh *bvh, const assay_ray
     for (unsigned k = 0; k < 3; k++) {
         r->near_plane[k] = 2 * k + (signs >> k & 1);
     }
-    r->scale = (double)scale;
+    r->scale       = (double)scale;
+    r->scale_above = (double)scale * (1.0 + slack);
 }
 
 /* False where the range of float does not suffice. */
@@ -74,12 +65,12 @@ static inline bool walk_start(walk_state *s, const assay_bvh *bvh, const assay_r
     const bvh_shear *shear = &s->query.shear;
     const double     m     = shear->magnitude;
     if (!(m >= range_low && m <= range_high && shear->abs_dz >= range_low &&
-          shear->abs_dz <= range_high)) {
+          shear->abs_dz <= range_high && s->query.t_after >= 0.0)) {
         return false;
     }
     start_boxes(&s->boxes, bvh, ray, m);
-    s->boxes.tau_after = tau_below(s->query.t_after * s->boxes.scale);
-    s->tau_best        = tau_above(s->query.best_t * s->boxes.scale);
+    s->boxes.tau_after = (float)(s->query.t_after * s->boxes.scale * (1.0 - slack));
+    s->tau_best        = (float)(s->query.best_t * s->boxes.scale_above);
     return true;
 }
 
@@ -109,53 +100,69 @@ static inline d4 combine(d4 u, d4 v, d4 w, d4 a, d4 b, d4 c)
     return d4_add(d4_add(d4_multiply(u, a), d4_multiply(v, b)), d4_multiply(w, c));
 }
 
-/* Lanes whose triangle the decision must see: those that it would let compete, and those that it
- * would refine.  The same operations as the decision's, so the same bits. */
-static inline unsigned candidates(const bvh_query *q, const bvh_leaf *leaf)
+/* Lets one lane compete; true when it became the best so far. */
+static inline bool try_lane(walk_state *s, const bvh_leaf *leaf, int lane, const double *t,
+                            const double *v, const double *w, const double *det)
 {
-    const bvh_shear *r = &q->shear;
+    bvh_query     *q        = &s->query;
+    const uint32_t triangle = leaf->triangle[lane];
+    if (!bvh_query_in_order(q, t[lane], triangle)) {
+        return false;
+    }
+    q->best_t        = t[lane];
+    q->best_triangle = triangle;
+    q->v             = v[lane];
+    q->w             = w[lane];
+    q->det           = det[lane];
+    return true;
+}
+
+/* The decision of bvh_decision.c for four triangles at once: the same operations in the same order,
+ * so the same bits.  True when a triangle of the leaf became the best hit. */
+static inline bool try_leaf(walk_state *s, const bvh_leaf *leaf)
+{
+    const bvh_shear *r = &s->query.shear;
     const corners    a = shear_corners(r, leaf->vertex[0][0]);
     const corners    b = shear_corners(r, leaf->vertex[1][0]);
     const corners    c = shear_corners(r, leaf->vertex[2][0]);
     const d4         u = edge(c, b), v = edge(a, c), w = edge(b, a);
     const d4         low  = d4_min(d4_min(u, v), w);
     const d4         high = d4_max(d4_max(u, v), w);
-    const unsigned   enclosing =
-        d4_or_mask(d4_greater_equal(low, d4_set1(0.0)), d4_greater_equal(d4_set1(0.0), high));
+    const unsigned   enclosing = d4_or_mask(d4_greater_equal(low, d4_set1(0.0)), d4_greater_equal(d4_set1(0.0), high));
     if (!enclosing) {
-        return 0;
+        return false;
     }
-    const d4 det   = d4_add(d4_add(u, v), w);
+    const d4 det = d4_add(d4_add(u, v), w);
     const d4 limit = d4_multiply(d4_set1(r->residual), d4_absolute(det));
-    const d4 x     = d4_absolute(combine(u, v, w, a.x, b.x, c.x));
-    const d4 y     = d4_absolute(combine(u, v, w, a.y, b.y, c.y));
-    const d4 t =
-        d4_multiply(d4_divide(combine(u, v, w, a.z, b.z, c.z), det), d4_set1(r->inverse_dz));
+    const d4 x = d4_absolute(combine(u, v, w, a.x, b.x, c.x));
+    const d4 y = d4_absolute(combine(u, v, w, a.y, b.y, c.y));
+    const d4 t = d4_multiply(d4_divide(combine(u, v, w, a.z, b.z, c.z), det), d4_set1(r->inverse_dz));
     const unsigned consistent = d4_and_mask(d4_greater(limit, x), d4_greater(limit, y));
-    const unsigned range      = d4_and_mask(d4_greater_equal(d4_set1(q->best_t), t),
-                                            d4_greater_equal(t, d4_set1(q->t_after)));
-    return enclosing & (range | ~consistent);
-}
-
-/* True when one of these triangles of the leaf became the best hit. */
-__attribute__((noinline)) static bool try_lanes(walk_state *s, const bvh_leaf *leaf, unsigned lanes)
-{
+    const unsigned range = d4_and_mask(d4_greater_equal(d4_set1(s->query.best_t), t), d4_greater_equal(t, d4_set1(s->query.t_after)));
+    unsigned lanes = enclosing & (range | ~consistent);
+    if (!lanes) {
+        return false;
+    }
+    _Alignas(32) double ts[4], vs[4], ws[4], dets[4];
+    d4_store(ts, t);
+    d4_store(vs, v);
+    d4_store(ws, w);
+    d4_store(dets, det);
     bool found = false;
     do {
         const int lane = __builtin_ctz(lanes);
-        found |= bvh_query_try(&s->query, &leaf->vertex[0][0][lane], 3 * BVH_LEAF_SIZE,
-                               BVH_LEAF_SIZE, leaf->triangle[lane]);
+        if (__builtin_expect(consistent >> lane & 1, 1)) {
+            found |= try_lane(s, leaf, lane, ts, vs, ws, dets);
+        } else {
+            found |= bvh_query_try(&s->query, &leaf->vertex[0][0][lane], 3 * BVH_LEAF_SIZE,
+                                   BVH_LEAF_SIZE, leaf->triangle[lane]);
+        }
         lanes &= lanes - 1;
     } while (lanes);
     if (found) {
-        s->tau_best = tau_above(s->query.best_t * s->boxes.scale);
+        s->tau_best = (float)(s->query.best_t * s->boxes.scale_above);
     }
     return found;
-}
-static inline bool try_leaf(walk_state *s, const bvh_leaf *leaf)
-{
-    unsigned lanes = candidates(&s->query, leaf);
-    return lanes && try_lanes(s, leaf, lanes);
 }
 
 /* ---- nodes ---- */
@@ -217,16 +224,47 @@ static inline float stack_entry(uint64_t item)
     return entry;
 }
 
-/* Pushes the children in `mask`, the nearest last; returns the new top. */
-static inline uint64_t *push_children(const assay_bvh *bvh, uint64_t *top, const bvh_node *node,
-                                      const float *entry, unsigned mask)
+static inline uint64_t take_child(const assay_bvh *bvh, const bvh_node *node, const float *entry, unsigned *mask)
 {
+    const int i = __builtin_ctz(*mask);
+    *mask &= *mask - 1;
+    prefetch(bvh, node->child[i]);
+    return stack_item(entry[i], node->child[i]);
+}
+
+#define ORDER(x, y) do { const uint64_t big_ = x > y ? x : y; y = x > y ? y : x; x = big_; } while (0)
+
+/* Pushes the children in `mask`, the nearest last; returns the new top. */
+static inline uint64_t *push_children(const assay_bvh *bvh, uint64_t *top, const bvh_node *node, const float *entry,
+                                      unsigned mask)
+{
+    uint64_t a = take_child(bvh, node, entry, &mask);
+    uint64_t b = take_child(bvh, node, entry, &mask);
+    uint64_t c = take_child(bvh, node, entry, &mask);
+    if (!mask) {
+        ORDER(a, b);
+        ORDER(b, c);
+        ORDER(a, b);
+        top[0] = a;
+        top[1] = b;
+        top[2] = c;
+        return top + 3;
+    }
+    uint64_t d = take_child(bvh, node, entry, &mask);
+    ORDER(a, b);
+    ORDER(c, d);
+    ORDER(a, c);
+    ORDER(b, d);
+    ORDER(b, c);
+    top[0] = a;
+    top[1] = b;
+    top[2] = c;
+    top[3] = d;
     uint64_t *first = top;
-    for (; mask; mask &= mask - 1) {
-        const int      i    = __builtin_ctz(mask);
-        const uint64_t item = stack_item(entry[i], node->child[i]);
-        prefetch(bvh, node->child[i]);
-        uint64_t *at = top++;
+    top += 4;
+    while (mask) {
+        const uint64_t item = take_child(bvh, node, entry, &mask);
+        uint64_t      *at   = top++;
         for (; at > first && at[-1] < item; at--) {
             *at = at[-1];
         }

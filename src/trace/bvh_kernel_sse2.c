@@ -50,6 +50,11 @@ static inline d4 d4_load(const float *p)
     const v4 v = v4_load(p);
     return (d4){_mm_cvtps_pd(v), _mm_cvtps_pd(_mm_movehl_ps(v, v))};
 }
+static inline void d4_store(double *p, d4 a)
+{
+    _mm_store_pd(p, a.a);
+    _mm_store_pd(p + 2, a.b);
+}
 static inline d4 d4_set1(double x) { return (d4){_mm_set1_pd(x), _mm_set1_pd(x)}; }
 static inline d4 d4_add(d4 p, d4 q) { return PAIR(_mm_add_pd); }
 static inline d4 d4_subtract(d4 p, d4 q) { return PAIR(_mm_sub_pd); }

@@ -34,6 +34,9 @@ static assay_params *make_params(assay_context *context, const setting *settings
     assay_params *params = NULL;
     require(context, assay_method_params(context, "path", &params));
     for (; settings && settings->name; settings++) {
+        if (strcmp(settings->name, "seed") == 0) {
+            continue;
+        }
         require(context, assay_params_set(params, settings->name, settings->value));
     }
     return params;
@@ -49,7 +52,12 @@ assay_image *measure_render(assay_scene *scene, const setting *settings, int wid
     options.width                = width;
     options.height               = height;
     options.layers               = layers;
-    const assay_status status    = assay_render(scene, "path", params, &options, &image, NULL);
+    for (const setting *s = settings; s && s->name; s++) {
+        if (strcmp(s->name, "seed") == 0) {
+            options.seed = strtoull(s->value, NULL, 10);
+        }
+    }
+    const assay_status status = assay_render(scene, "path", params, &options, &image, NULL);
     assay_params_destroy(params);
     assay_context_destroy(context);
     assert_int_equal(status, ASSAY_OK);

@@ -9,7 +9,7 @@ typedef struct {
     double value, error;
 } measured;
 
-/* A parameter by name and value; lists end with {NULL, NULL}. */
+/* A parameter by name and value, or "seed"; lists end with {NULL, NULL}. */
 typedef struct {
     const char *name, *value;
 } setting;
