@@ -65,10 +65,10 @@ gltf_document *make_rectangle_over_plane(void)
         "rectangle-over-plane",
         "A one-sided emitting rectangle of 1 m by 2 m, 1 m over a floor; see README.md");
     const int grey  = gltf_add_material(d, gltf_lambertian("floor", 0.5, 0.5, 0.5));
-    const int light = gltf_add_material(d, emitter("light", 0.0, 10.0));
+    const int light = gltf_add_material(d, emitter("light", 0.0, 4.0));
     add_rectangle(d, "floor", 10.0, 10.0, 0.0, false, grey);
     add_rectangle(d, "light", 1.0, 2.0, 1.0, true, light);
-    gltf_add_perspective(d, "side", 0.8, vec3(3.5, 0.875, 3.0), vec3(0.0, 0.375, 0.0));
+    gltf_add_perspective(d, "side", 0.8, vec3(3.5, 0.5, 3.0), vec3(0.0, 0.5, 0.0));
     gltf_add_orthographic(d, "plan", 2.0, 2.0, vec3(0.0, 0.875, 0.0), origin);
     return d;
 }

@@ -244,6 +244,6 @@ gltf_document *make_colonnade(void)
     add_light(&h);
     gltf_add_perspective(h.d, "atrium", 1.05, vec3(9.25, 1.75, 0.75), vec3(-9.0, 4.5, -0.5));
     gltf_add_perspective(h.d, "lower_arcade", 1.0, vec3(8.5, 1.65, 6.0), vec3(-10.0, 1.75, 4.5));
-    gltf_add_perspective(h.d, "upper_gallery", 1.1, vec3(12.5, 7.25, 0.75), vec3(-6.0, 5.0, -1.25));
+    gltf_add_perspective(h.d, "upper_gallery", 0.85, vec3(11.75, 7.375, 0.5), vec3(-4.0, 2.75, -1.25));
     return h.d;
 }

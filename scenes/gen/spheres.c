@@ -71,6 +71,6 @@ gltf_document *make_spheres(void)
     add_quad_node(d, "floor", floor, gltf_lambertian("floor", 0.4, 0.4, 0.4));
     add_quad_node(d, "back wall", back, gltf_lambertian("wall", 0.3, 0.45, 0.55));
     add_quad_node(d, "panel", panel, light);
-    gltf_add_perspective(d, "front", 0.6, vec3(0.0, 2.75, 6.5), vec3(0.0, 0.375, 0.0));
+    gltf_add_perspective(d, "front", 0.8, vec3(0.0, 3.0, 6.5), vec3(0.0, 0.375, 0.0));
     return d;
 }

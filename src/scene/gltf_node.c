@@ -219,20 +219,6 @@ static assay_status place_cameras(const assay_gltf_loader *loader)
     return ASSAY_OK;
 }
 
-static assay_status check_cameras(const assay_gltf_loader *loader)
-{
-    const assay_json *array = assay_json_member(loader->json.nodes, "cameras");
-    uint32_t          index = 0;
-    for (const assay_json *c = array ? array->child : NULL; c; c = c->next, index++) {
-        const char *type = assay_json_text(c, "type", "");
-        if (!assay_json_member(c, type)) {
-            return assay_gltf_fail(loader, ASSAY_ERR_FORMAT, "cameras/%u: has no '%s'", index,
-                                   type);
-        }
-    }
-    return ASSAY_OK;
-}
-
 assay_status assay_gltf_load_nodes(assay_gltf_loader *loader)
 {
     assay_scene *scene                                       = loader->scene;
@@ -248,6 +234,5 @@ assay_status assay_gltf_load_nodes(assay_gltf_loader *loader)
         }
     }
     mark_descendants(scene);
-    const assay_status status = check_cameras(loader);
-    return status == ASSAY_OK ? place_cameras(loader) : status;
+    return place_cameras(loader);
 }

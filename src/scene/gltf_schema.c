@@ -359,6 +359,22 @@ static assay_status check_required_extensions(const assay_gltf_schema *schema,
     return ASSAY_OK;
 }
 
+/* A camera has the projection that its type names. */
+static assay_status check_cameras(const assay_gltf_schema *schema, const assay_json *root)
+{
+    static const place cameras = {NULL, "cameras", 0};
+    const assay_json  *array   = assay_json_member(root, "cameras");
+    uint32_t           index   = 0;
+    for (const assay_json *c = array ? array->child : NULL; c; c = c->next, index++) {
+        const char *type = assay_json_text(c, "type", "");
+        if (!assay_json_member(c, type)) {
+            const place camera = {&cameras, NULL, index}, here = {&camera, type, 0};
+            return fail_at(schema, &here, ASSAY_ERR_FORMAT, "is missing");
+        }
+    }
+    return ASSAY_OK;
+}
+
 assay_status assay_gltf_check_document(assay_gltf_schema *schema, const assay_json *root)
 {
     const place at = {NULL, "", 0};
@@ -376,6 +392,9 @@ assay_status assay_gltf_check_document(assay_gltf_schema *schema, const assay_js
     }
     if (status == ASSAY_OK) {
         status = check_members(schema, &at, assay_gltf_find_type("root"), root);
+    }
+    if (status == ASSAY_OK) {
+        status = check_cameras(schema, root);
     }
     const assay_json *used = assay_json_member(root, "extensionsUsed");
     for (const assay_json *e = used && status == ASSAY_OK ? used->child : NULL; e; e = e->next) {

@@ -194,8 +194,8 @@ static void warn_of_emptiness(assay_scene *scene)
         assay_scene_warn(scene, "the scene has no triangles");
     }
     if (!assay_scene_describe(scene).has_light) {
-        assay_scene_warn(scene, "nothing in the scene emits light: images of it are black; an "
-                                "environment map or a background would light it");
+        assay_scene_warn(scene, "nothing in the scene emits light: its images are black without an "
+                                "environment or a background");
     }
     if (scene->camera_is_made) {
         assay_scene_warn(scene, "the scene has no camera: one that frames it is used");

@@ -1,9 +1,9 @@
 /* surface.c - geometry, shading normal and tangent frame at a hit.
  *
- * Invariant: ng and ns are unit vectors and ng . ns >= MIN_COSINE.  A shading normal that leans
- * over the edge of its own triangle (a coarse mesh seen from the side, a steep normal map) is bent
- * back just that far, in the plane that it spans with ng.  Where all three vertex normals look to
- * the back, the file has them inverted, and they are turned round.
+ * Invariant: ng and ns are unit vectors and ng . ns >= MIN_COSINE, up to rounding.  A shading
+ * normal that leans over the edge of its own triangle (a coarse mesh seen from the side, a steep
+ * normal map) is bent back just that far, in the plane that it spans with ng.  Where all three
+ * vertex normals look to the back, the file has them inverted, and they are turned round.
  *
  * Departure: where a normal-mapped mesh has no tangents, glTF asks for MikkTSpace; here the tangent
  * of the triangle's own texture coordinates is taken, constant over a triangle.  Where these do not

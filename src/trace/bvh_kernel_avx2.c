@@ -58,7 +58,11 @@ static inline unsigned v4_less_equal(v4 a, v4 b)
 
 typedef __m256d        d4;
 static inline d4       d4_load(const float *p) { return _mm256_cvtps_pd(_mm_load_ps(p)); }
-static inline d4       d4_set1(double x) { return _mm256_set1_pd(x); }
+static inline void d4_store(double *p, d4 a)
+{
+    _mm256_store_pd(p, a);
+}
+static inline d4 d4_set1(double x) { return _mm256_set1_pd(x); }
 static inline d4       d4_add(d4 a, d4 b) { return _mm256_add_pd(a, b); }
 static inline d4       d4_subtract(d4 a, d4 b) { return _mm256_sub_pd(a, b); }
 static inline d4       d4_multiply(d4 a, d4 b) { return _mm256_mul_pd(a, b); }
