@@ -13,8 +13,7 @@ static int add_box(gltf_document *d, const char *name, assay_vec3 low, assay_vec
     solid_mesh mesh;
     mesh_init(&mesh, true);
     mesh_box(&mesh, low, high, false);
-    const int node =
-        gltf_add_mesh_node(d, name, gltf_add_mesh(d, name, &mesh, material), at);
+    const int node = gltf_add_mesh_node(d, name, gltf_add_mesh(d, name, &mesh, material), at);
     mesh_release(&mesh);
     return node;
 }
@@ -27,12 +26,11 @@ static int grey(gltf_document *d, const char *name, double r, double g, double b
 /* One turn about +Y in four seconds: a quarter between two keys. */
 static void add_spinner(gltf_document *d)
 {
-    static const float times[5] = {0, 1, 2, 3, 4};
-    const float        h        = (float)HALF_SQRT2;
+    static const float times[5]  = {0, 1, 2, 3, 4};
+    const float        h         = (float)HALF_SQRT2;
     const float        turns[20] = {0, 0, 0, 1, 0, h, 0, h, 0, 1, 0, 0, 0, h, 0, -h, 0, 0, 0, -1};
-    const int          node =
-        add_box(d, "spinner", vec3(-0.375, -0.25, -0.125), vec3(0.375, 0.25, 0.125),
-                grey(d, "red", 0.6, 0.1, 0.1), vec3(-3.0, 0.5, 0.0));
+    const int node = add_box(d, "spinner", vec3(-0.375, -0.25, -0.125), vec3(0.375, 0.25, 0.125),
+                             grey(d, "red", 0.6, 0.1, 0.1), vec3(-3.0, 0.5, 0.0));
     gltf_add_channel(d, node, GLTF_ROTATION, GLTF_LINEAR, times, 5, turns);
 }
 
@@ -42,9 +40,8 @@ static void add_stepper(gltf_document *d)
     static const float times[4]   = {0, 1, 2, 3};
     static const float places[12] = {-1.5f, 0.25f, 0, -1.5f, 0.75f, 0,
                                      -1.5f, 1.25f, 0, -1.5f, 0.25f, 0};
-    const int          node       = add_box(d, "stepper", vec3(-0.25, -0.25, -0.25),
-                                            vec3(0.25, 0.25, 0.25), grey(d, "green", 0.1, 0.5, 0.1),
-                                            vec3(-1.5, 0.25, 0.0));
+    const int node = add_box(d, "stepper", vec3(-0.25, -0.25, -0.25), vec3(0.25, 0.25, 0.25),
+                             grey(d, "green", 0.1, 0.5, 0.1), vec3(-1.5, 0.25, 0.0));
     gltf_add_channel(d, node, GLTF_TRANSLATION, GLTF_STEP, times, 4, places);
 }
 
@@ -52,12 +49,12 @@ static void add_stepper(gltf_document *d)
  * with the slopes 2 and -2 m/s is exactly. */
 static void add_jumper(gltf_document *d)
 {
-    static const float times[3]   = {0, 2, 4};
+    static const float times[3]    = {0, 2, 4};
     static const float splines[27] = {0, 0,  0, 0, 0.25f, 0, 0, 2, 0, /* in, value, out */
-                                      0, -2, 0, 0, 0.25f, 0, 0, 2, 0, 0, -2, 0, 0, 0.25f, 0, 0, 0, 0};
-    const int          node        = add_box(d, "jumper", vec3(-0.25, -0.25, -0.25),
-                                             vec3(0.25, 0.25, 0.25), grey(d, "blue", 0.1, 0.15, 0.6),
-                                             vec3(0.0, 0.25, 0.0));
+                                      0, -2, 0, 0, 0.25f, 0, 0, 2, 0,
+                                      0, -2, 0, 0, 0.25f, 0, 0, 0, 0};
+    const int node = add_box(d, "jumper", vec3(-0.25, -0.25, -0.25), vec3(0.25, 0.25, 0.25),
+                             grey(d, "blue", 0.1, 0.15, 0.6), vec3(0.0, 0.25, 0.0));
     gltf_add_channel(d, node, GLTF_TRANSLATION, GLTF_CUBICSPLINE, times, 3, splines);
 }
 
@@ -101,8 +98,8 @@ static void bar(solid_mesh *mesh)
 /* The upper joint, at 0.75 m, turns a quarter about +Z and back. */
 static void add_bender(gltf_document *d)
 {
-    static const float times[3] = {0, 2, 4};
-    const float        h        = (float)HALF_SQRT2;
+    static const float times[3]  = {0, 2, 4};
+    const float        h         = (float)HALF_SQRT2;
     const float        turns[12] = {0, 0, 0, 1, 0, 0, h, h, 0, 0, 0, 1};
     double             weights[256];
     solid_mesh         mesh;
@@ -116,16 +113,16 @@ static void add_bender(gltf_document *d)
     gltf_bind_to_joints(d, added, weights, mesh.vertex_count);
     mesh_release(&mesh);
 
-    gltf_node lower        = gltf_node_default("lower joint");
-    lower.transform        = GLTF_TRS;
-    lower.translation      = vec3(3.0, 0.0, 0.0);
-    const int lower_index  = gltf_add_node(d, lower);
-    gltf_node upper        = gltf_node_default("upper joint");
-    upper.parent           = lower_index;
-    upper.transform        = GLTF_TRS;
-    upper.translation      = vec3(0.0, 0.75, 0.0);
-    const int  upper_index = gltf_add_node(d, upper);
-    const int  joints[2]   = {lower_index, upper_index};
+    gltf_node lower                  = gltf_node_default("lower joint");
+    lower.transform                  = GLTF_TRS;
+    lower.translation                = vec3(3.0, 0.0, 0.0);
+    const int lower_index            = gltf_add_node(d, lower);
+    gltf_node upper                  = gltf_node_default("upper joint");
+    upper.parent                     = lower_index;
+    upper.transform                  = GLTF_TRS;
+    upper.translation                = vec3(0.0, 0.75, 0.0);
+    const int        upper_index     = gltf_add_node(d, upper);
+    const int        joints[2]       = {lower_index, upper_index};
     const assay_vec3 inverse_bind[2] = {origin, {0.0, -0.75, 0.0}};
 
     gltf_node node = gltf_node_default("bender");
@@ -137,8 +134,8 @@ static void add_bender(gltf_document *d)
 
 gltf_document *make_animated(void)
 {
-    gltf_document *d = gltf_create(
-        "animated", "One part for every kind of motion, four seconds; see README.md");
+    gltf_document *d =
+        gltf_create("animated", "One part for every kind of motion, four seconds; see README.md");
     solid_mesh floor, panel;
     mesh_init(&floor, true);
     mesh_quad(&floor, vec3(-5, 0, 3), vec3(5, 0, 3), vec3(5, 0, -3), vec3(-5, 0, -3));
@@ -152,8 +149,8 @@ gltf_document *make_animated(void)
     light.emissive_strength = 4.0;
     mesh_init(&panel, true);
     mesh_quad(&panel, vec3(-3, 4, -1), vec3(3, 4, -1), vec3(3, 4, 1), vec3(-3, 4, 1));
-    gltf_add_mesh_node(d, "panel",
-                       gltf_add_mesh(d, "panel", &panel, gltf_add_material(d, light)), origin);
+    gltf_add_mesh_node(d, "panel", gltf_add_mesh(d, "panel", &panel, gltf_add_material(d, light)),
+                       origin);
     mesh_release(&panel);
     add_spinner(d);
     add_stepper(d);

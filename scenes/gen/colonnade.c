@@ -12,7 +12,7 @@ static const assay_vec3 origin = {0.0, 0.0, 0.0};
 
 typedef struct {
     gltf_document *d;
-    int            stone, pale, plaster, tile_light, tile_dark, roof, wood, bronze, red, green, blue;
+    int stone, pale, plaster, tile_light, tile_dark, roof, wood, bronze, red, green, blue;
 } hall;
 
 /* ---- placing ---- */
@@ -33,10 +33,7 @@ static gltf_node side_node(const char *name, int mesh, int side, double along, d
     return node;
 }
 
-static int bays_of(int side)
-{
-    return side % 2 ? BAYS_Z : BAYS_X;
-}
+static int bays_of(int side) { return side % 2 ? BAYS_Z : BAYS_X; }
 
 /* A part at every bay's middle, or at every column axis between bays. */
 static void add_along_sides(hall *h, const char *name, int mesh, double y, bool at_columns)
@@ -158,8 +155,8 @@ static void add_cloths(hall *h)
     static const struct {
         int    side, color;
         double along;
-    } banners[7] = {{0, 0, -2.5}, {0, 1, -0.5}, {0, 2, 1.5}, {2, 1, -1.5},
-                    {2, 2, 0.5},  {2, 0, 2.5},  {3, 0, 0.0}};
+    } banners[7]                          = {{0, 0, -2.5}, {0, 1, -0.5}, {0, 2, 1.5}, {2, 1, -1.5},
+                                             {2, 2, 0.5},  {2, 0, 2.5},  {3, 0, 0.0}};
     static const char *const names[3]     = {"red cloth", "green cloth", "blue cloth"};
     const int                materials[3] = {h->red, h->green, h->blue};
     int                      meshes[3];
@@ -187,8 +184,8 @@ static void add_floor(hall *h)
 
 /* ---- light ---- */
 
-/* The sky ends in the east where the sun's rays to the court begin: those that pass the western edge
- * of the roof, at x = -9.25 m and 10.6 m up, come down from x = 5.3 m at the sky's height. */
+/* The sky ends in the east where the sun's rays to the court begin: those that pass the western
+ * edge of the roof, at x = -9.25 m and 10.6 m up, come down from x = 5.3 m at the sky's height. */
 #define SKY_HEIGHT 24.0
 
 static void add_light(hall *h)
@@ -209,15 +206,15 @@ static void add_light(hall *h)
 
 static void add_materials(hall *h)
 {
-    gltf_document *d = h->d;
-    h->stone         = gltf_add_material(d, gltf_lambertian("stone", 0.56, 0.50, 0.42));
-    h->pale          = gltf_add_material(d, gltf_lambertian("pale stone", 0.68, 0.64, 0.57));
-    h->plaster       = gltf_add_material(d, gltf_lambertian("plaster", 0.70, 0.66, 0.58));
-    h->tile_light    = gltf_add_material(d, gltf_lambertian("light tile", 0.52, 0.48, 0.42));
-    h->tile_dark     = gltf_add_material(d, gltf_lambertian("dark tile", 0.32, 0.26, 0.21));
-    h->roof          = gltf_add_material(d, gltf_lambertian("terracotta", 0.45, 0.22, 0.14));
-    h->wood          = gltf_add_material(d, gltf_lambertian("wood", 0.20, 0.12, 0.07));
-    h->bronze        = gltf_add_material(d, gltf_lambertian("bronze", 0.30, 0.22, 0.10));
+    gltf_document *d       = h->d;
+    h->stone               = gltf_add_material(d, gltf_lambertian("stone", 0.56, 0.50, 0.42));
+    h->pale                = gltf_add_material(d, gltf_lambertian("pale stone", 0.68, 0.64, 0.57));
+    h->plaster             = gltf_add_material(d, gltf_lambertian("plaster", 0.70, 0.66, 0.58));
+    h->tile_light          = gltf_add_material(d, gltf_lambertian("light tile", 0.52, 0.48, 0.42));
+    h->tile_dark           = gltf_add_material(d, gltf_lambertian("dark tile", 0.32, 0.26, 0.21));
+    h->roof                = gltf_add_material(d, gltf_lambertian("terracotta", 0.45, 0.22, 0.14));
+    h->wood                = gltf_add_material(d, gltf_lambertian("wood", 0.20, 0.12, 0.07));
+    h->bronze              = gltf_add_material(d, gltf_lambertian("bronze", 0.30, 0.22, 0.10));
     gltf_material cloth[3] = {gltf_lambertian("red cloth", 0.60, 0.05, 0.05),
                               gltf_lambertian("green cloth", 0.06, 0.45, 0.12),
                               gltf_lambertian("blue cloth", 0.06, 0.12, 0.60)};
@@ -231,8 +228,8 @@ static void add_materials(hall *h)
 
 gltf_document *make_colonnade(void)
 {
-    hall h = {.d = gltf_create("colonnade",
-                               "A two-storey colonnade round an open court; see README.md")};
+    hall h = {
+        .d = gltf_create("colonnade", "A two-storey colonnade round an open court; see README.md")};
     add_materials(&h);
     add_floor(&h);
     add_rings(&h);
@@ -244,6 +241,7 @@ gltf_document *make_colonnade(void)
     add_light(&h);
     gltf_add_perspective(h.d, "atrium", 1.05, vec3(9.25, 1.75, 0.75), vec3(-9.0, 4.5, -0.5));
     gltf_add_perspective(h.d, "lower_arcade", 1.0, vec3(8.5, 1.65, 6.0), vec3(-10.0, 1.75, 4.5));
-    gltf_add_perspective(h.d, "upper_gallery", 0.85, vec3(11.75, 7.375, 0.5), vec3(-4.0, 2.75, -1.25));
+    gltf_add_perspective(h.d, "upper_gallery", 0.85, vec3(11.75, 7.375, 0.5),
+                         vec3(-4.0, 2.75, -1.25));
     return h.d;
 }

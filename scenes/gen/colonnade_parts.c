@@ -77,7 +77,7 @@ void arcade_solid(solid_mesh *mesh, const storey_shape *storey, int bays)
 
 void archivolt_solid(solid_mesh *mesh)
 {
-    const double        back = -0.01;
+    const double        back      = -0.01;
     const profile_point profile[] = {{0.92, back, false, 0.0},  {1.12, back, false, 0.0},
                                      {1.12, 0.020, false, 0.0}, {1.07, 0.045, true, 0.0},
                                      {0.97, 0.045, true, 0.0},  {0.92, 0.020, false, 0.0}};
@@ -156,10 +156,10 @@ void baluster_row(solid_mesh *mesh)
 void basin_solid(solid_mesh *mesh)
 {
     static const profile_point rim[] = {
-        {0.0, -0.05, false, 0.0},  {1.70, -0.05, false, 0.0}, {1.70, 0.12, false, 0.0},
-        {1.62, 0.16, false, 0.0},  {1.58, 0.42, true, 0.0},   {1.66, 0.50, true, 0.0},
-        {1.68, 0.56, false, 0.0},  {1.40, 0.56, false, 0.0},  {1.34, 0.30, true, 0.0},
-        {1.10, 0.20, true, 0.0},   {0.0, 0.18, false, 0.0},
+        {0.0, -0.05, false, 0.0}, {1.70, -0.05, false, 0.0}, {1.70, 0.12, false, 0.0},
+        {1.62, 0.16, false, 0.0}, {1.58, 0.42, true, 0.0},   {1.66, 0.50, true, 0.0},
+        {1.68, 0.56, false, 0.0}, {1.40, 0.56, false, 0.0},  {1.34, 0.30, true, 0.0},
+        {1.10, 0.20, true, 0.0},  {0.0, 0.18, false, 0.0},
     };
     static const profile_point bowl[] = {
         {0.0, 0.10, false, 0.0},  {0.32, 0.10, false, 0.0}, {0.28, 0.30, true, 0.0},
@@ -196,7 +196,8 @@ static assay_vec3 banner_at(const void *user, double u, double v)
     const double        fall = 1.0 - v;
     const assay_sincos  fold = assay_sincos_turns(b->folds * u + 0.15 * fall);
     const double        hem  = 0.12 * (2.0 * u - 1.0) * (2.0 * u - 1.0);
-    return vec3((0.5 - u) * b->width * (1.0 - 0.12 * fall), GALLERY + 1.06 - b->length * fall + hem * fall,
+    return vec3((0.5 - u) * b->width * (1.0 - 0.12 * fall),
+                GALLERY + 1.06 - b->length * fall + hem * fall,
                 -0.55 - b->depth * fall * (1.2 + fold.sin));
 }
 
@@ -210,7 +211,7 @@ void banner_sheet(solid_mesh *mesh, int style)
 
 void floor_tiles(solid_mesh *mesh, int colour)
 {
-    const double tile = 0.625;
+    const double tile   = 0.625;
     const int    half_x = 23, half_z = 13; /* reaches under the outer wall */
     mesh_init(mesh, true);
     for (int k = -half_z; k < half_z; k++) {

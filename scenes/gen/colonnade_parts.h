@@ -11,17 +11,17 @@
 #define BAY 2.5
 #define BAYS_X 8
 #define BAYS_Z 3
-#define HALF_X 10.0   /* 8 bays */
-#define HALF_Z 3.75   /* 3 bays */
-#define AISLE 3.75    /* from the column axes to the outer wall */
-#define GALLERY 5.6   /* floor of the upper storey */
+#define HALF_X 10.0 /* 8 bays */
+#define HALF_Z 3.75 /* 3 bays */
+#define AISLE 3.75  /* from the column axes to the outer wall */
+#define GALLERY 5.6 /* floor of the upper storey */
 #define ARCH_RADIUS 0.9
-#define WALL 0.6      /* thickness of the arcades */
+#define WALL 0.6 /* thickness of the arcades */
 
 typedef struct {
     const char *column_name, *arcade_name, *archivolt_name, *pilaster_name;
-    double      base, springing, top; /* heights of the floor, of the arches' feet, of the wall, m */
-    double      radius;               /* of a column's shaft at its foot, m */
+    double base, springing, top; /* heights of the floor, of the arches' feet, of the wall, m */
+    double radius;               /* of a column's shaft at its foot, m */
 } storey_shape;
 
 /* 0: lower, 1: upper. */

@@ -6,8 +6,14 @@
 #include "core/numerics.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
-#define EDGE(u, v) {u, v, false, 0.0}
-#define BEND(u, v) {u, v, true, 0.0}
+#define EDGE(u, v)                                                                                 \
+    {                                                                                              \
+        u, v, false, 0.0                                                                           \
+    }
+#define BEND(u, v)                                                                                 \
+    {                                                                                              \
+        u, v, true, 0.0                                                                            \
+    }
 
 static void ring(solid_mesh *mesh, const profile_point *profile, size_t count)
 {
@@ -64,26 +70,27 @@ void ceiling_ring(solid_mesh *mesh)
 void roof_ring(solid_mesh *mesh)
 {
     static const profile_point profile[] = {
-        EDGE(-0.34, 10.15), EDGE(0.25, 10.15), EDGE(0.25, 10.5),  EDGE(AISLE + 0.2, 11.2),
-        EDGE(AISLE + 0.85, 11.45), EDGE(AISLE + 0.85, 11.62), EDGE(-0.75, 10.62),
-        EDGE(-0.75, 10.50), EDGE(-0.60, 10.46), BEND(-0.52, 10.36), BEND(-0.40, 10.30),
-        EDGE(-0.36, 10.22)};
+        EDGE(-0.34, 10.15),      EDGE(0.25, 10.15),         EDGE(0.25, 10.5),
+        EDGE(AISLE + 0.2, 11.2), EDGE(AISLE + 0.85, 11.45), EDGE(AISLE + 0.85, 11.62),
+        EDGE(-0.75, 10.62),      EDGE(-0.75, 10.50),        EDGE(-0.60, 10.46),
+        BEND(-0.52, 10.36),      BEND(-0.40, 10.30),        EDGE(-0.36, 10.22)};
     ring(mesh, profile, COUNT(profile));
 }
 
 /* A step between the columns, on which nothing stands but their plinths pass through. */
 void kerb_ring(solid_mesh *mesh)
 {
-    static const profile_point profile[] = {EDGE(-0.52, -0.06), EDGE(0.52, -0.06), EDGE(0.52, 0.04),
-                                            EDGE(0.49, 0.07),   EDGE(-0.49, 0.07), EDGE(-0.52, 0.04)};
+    static const profile_point profile[] = {EDGE(-0.52, -0.06), EDGE(0.52, -0.06),
+                                            EDGE(0.52, 0.04),   EDGE(0.49, 0.07),
+                                            EDGE(-0.49, 0.07),  EDGE(-0.52, 0.04)};
     ring(mesh, profile, COUNT(profile));
 }
 
 void rail_ring(solid_mesh *mesh, double low, double high, double half_width)
 {
     const double        w = half_width, b = 0.03;
-    const profile_point profile[] = {EDGE(-w + b, low), EDGE(w - b, low),  EDGE(w, low + b),
-                                     EDGE(w, high - b), EDGE(w - b, high), EDGE(-w + b, high),
+    const profile_point profile[] = {EDGE(-w + b, low),  EDGE(w - b, low),  EDGE(w, low + b),
+                                     EDGE(w, high - b),  EDGE(w - b, high), EDGE(-w + b, high),
                                      EDGE(-w, high - b), EDGE(-w, low + b)};
     ring(mesh, profile, COUNT(profile));
 }

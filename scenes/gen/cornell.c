@@ -11,8 +11,9 @@ typedef struct {
     double x, y, z; /* mm */
 } millimetres;
 
-static const millimetres floor_quad[4]   = {{552.8, 0, 0}, {0, 0, 0}, {0, 0, 559.2}, {549.6, 0, 559.2}};
-static const millimetres back_quad[4]    = {
+static const millimetres floor_quad[4] = {
+    {552.8, 0, 0}, {0, 0, 0}, {0, 0, 559.2}, {549.6, 0, 559.2}};
+static const millimetres back_quad[4] = {
     {549.6, 0, 559.2}, {0, 0, 559.2}, {0, 548.8, 559.2}, {556.0, 548.8, 559.2}};
 static const millimetres right_quad[4] = {
     {0, 0, 559.2}, {0, 0, 0}, {0, 548.8, 0}, {0, 548.8, 559.2}};
@@ -39,10 +40,7 @@ static const millimetres tall_block[5][4] = {
     {{314, 0, 456}, {314, 330, 456}, {265, 330, 296}, {265, 0, 296}},
     {{265, 0, 296}, {265, 330, 296}, {423, 330, 247}, {423, 0, 247}}};
 
-static assay_vec3 metres(millimetres p)
-{
-    return vec3(p.x / 1000.0, p.y / 1000.0, p.z / 1000.0);
-}
+static assay_vec3 metres(millimetres p) { return vec3(p.x / 1000.0, p.y / 1000.0, p.z / 1000.0); }
 
 static void add_quad(solid_mesh *mesh, const millimetres q[4])
 {

@@ -40,7 +40,7 @@ void gltf_destroy(gltf_document *document)
 static void put_bytes(gltf_view_bytes *view, uint32_t value, int bytes)
 {
     for (int i = 0; i < bytes; i++) {
-        view->bytes = tool_grow(view->bytes, view->size, &view->capacity, 1);
+        view->bytes               = tool_grow(view->bytes, view->size, &view->capacity, 1);
         view->bytes[view->size++] = (uint8_t)(value >> (8 * i));
     }
 }
@@ -52,8 +52,8 @@ static void put_float(gltf_view_bytes *view, float value)
     put_bytes(view, bits, 4);
 }
 
-static gltf_accessor *add_accessor(gltf_document *d, gltf_view view, size_t count,
-                                   const char *type, int *index_out)
+static gltf_accessor *add_accessor(gltf_document *d, gltf_view view, size_t count, const char *type,
+                                   int *index_out)
 {
     d->accessors =
         tool_grow(d->accessors, d->accessor_count, &d->accessor_capacity, sizeof *d->accessors);
@@ -83,10 +83,7 @@ static int add_floats(gltf_document *d, gltf_view view, const float *values, siz
 }
 
 /* Negative zero would be another byte and the same place: it is written as zero. */
-static float to_float(double value)
-{
-    return (float)value + 0.0f;
-}
+static float to_float(double value) { return (float)value + 0.0f; }
 
 static int add_vectors(gltf_document *d, const assay_vec3 *vectors, size_t count, bool bounds)
 {
@@ -136,7 +133,7 @@ int gltf_add_material(gltf_document *d, gltf_material material)
 
 static int push_mesh(gltf_document *d, gltf_mesh mesh)
 {
-    d->meshes           = tool_grow(d->meshes, d->mesh_count, &d->mesh_capacity, sizeof *d->meshes);
+    d->meshes = tool_grow(d->meshes, d->mesh_count, &d->mesh_capacity, sizeof *d->meshes);
     d->meshes[d->mesh_count] = mesh;
     return (int)d->mesh_count++;
 }
@@ -214,10 +211,10 @@ int gltf_add_node(gltf_document *d, gltf_node node)
 
 int gltf_add_mesh_node(gltf_document *d, const char *name, int mesh, assay_vec3 at)
 {
-    gltf_node  node = gltf_node_default(name);
-    const bool here = at.x == 0.0 && at.y == 0.0 && at.z == 0.0;
-    node.mesh       = mesh;
-    node.transform  = here ? GLTF_IDENTITY : GLTF_TRS;
+    gltf_node  node  = gltf_node_default(name);
+    const bool here  = at.x == 0.0 && at.y == 0.0 && at.z == 0.0;
+    node.mesh        = mesh;
+    node.transform   = here ? GLTF_IDENTITY : GLTF_TRS;
     node.translation = at;
     return gltf_add_node(d, node);
 }
@@ -228,16 +225,16 @@ static void look_rotation(assay_vec3 forward, double q[4])
 {
     const assay_vec3 z        = vec3_normalize(vec3_negate(forward));
     const bool       vertical = z.x == 0.0 && z.z == 0.0;
-    const assay_vec3 up = vertical ? vec3(0.0, 0.0, -1.0) : vec3(0.0, 1.0, 0.0);
+    const assay_vec3 up       = vertical ? vec3(0.0, 0.0, -1.0) : vec3(0.0, 1.0, 0.0);
     const assay_vec3 x = vec3_normalize(vec3_cross(up, z)), y = vec3_cross(z, x);
     /* [shepperd78]: the largest of the four is taken from the diagonal, the others from it. */
-    const double diagonal[4] = {1.0 + x.x - y.y - z.z, 1.0 - x.x + y.y - z.z,
-                                1.0 - x.x - y.y + z.z, 1.0 + x.x + y.y + z.z};
+    const double diagonal[4] = {1.0 + x.x - y.y - z.z, 1.0 - x.x + y.y - z.z, 1.0 - x.x - y.y + z.z,
+                                1.0 + x.x + y.y + z.z};
     const double sums[4][4]  = {{0.0, x.y + y.x, x.z + z.x, y.z - z.y},
                                 {x.y + y.x, 0.0, y.z + z.y, z.x - x.z},
                                 {x.z + z.x, y.z + z.y, 0.0, x.y - y.x},
                                 {y.z - z.y, z.x - x.z, x.y - y.x, 0.0}};
-    int          largest = 3;
+    int          largest     = 3;
     for (int i = 2; i >= 0; i--) {
         largest = diagonal[i] > diagonal[largest] ? i : largest;
     }
@@ -250,12 +247,12 @@ static void look_rotation(assay_vec3 forward, double q[4])
 static int add_camera(gltf_document *d, const char *name, gltf_camera camera, assay_vec3 eye,
                       assay_vec3 target)
 {
-    d->cameras   = tool_grow(d->cameras, d->camera_count, &d->camera_capacity, sizeof *d->cameras);
+    d->cameras = tool_grow(d->cameras, d->camera_count, &d->camera_capacity, sizeof *d->cameras);
     d->cameras[d->camera_count] = camera;
-    gltf_node node   = gltf_node_default(name);
-    node.camera      = (int)d->camera_count++;
-    node.transform   = GLTF_TRS;
-    node.translation = eye;
+    gltf_node node              = gltf_node_default(name);
+    node.camera                 = (int)d->camera_count++;
+    node.transform              = GLTF_TRS;
+    node.translation            = eye;
     look_rotation(vec3_sub(target, eye), node.rotation);
     return gltf_add_node(d, node);
 }
@@ -276,7 +273,7 @@ int gltf_add_orthographic(gltf_document *d, const char *name, double xmag, doubl
 int gltf_add_sun(gltf_document *d, const char *name, const double color[3], double intensity,
                  assay_vec3 direction)
 {
-    d->lights    = tool_grow(d->lights, d->light_count, &d->light_capacity, sizeof *d->lights);
+    d->lights = tool_grow(d->lights, d->light_count, &d->light_capacity, sizeof *d->lights);
     d->lights[d->light_count] =
         (gltf_light){.name = name, .color = {color[0], color[1], color[2]}, .intensity = intensity};
     gltf_node node = gltf_node_default(name);
@@ -310,9 +307,9 @@ int gltf_add_skin(gltf_document *d, const int *joints, const assay_vec3 *inverse
     }
     add_accessor(d, GLTF_VIEW_KEYS, count, "MAT4", &skin.inverse_bind);
     for (size_t j = 0; j < count; j++) {
-        const assay_vec3 t      = inverse_bind[j];
-        const double     m[16]  = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, t.x, t.y, t.z, 1};
-        skin.joints[j]          = joints[j];
+        const assay_vec3 t     = inverse_bind[j];
+        const double     m[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, t.x, t.y, t.z, 1};
+        skin.joints[j]         = joints[j];
         for (int i = 0; i < 16; i++) {
             put_float(&d->views[GLTF_VIEW_KEYS], to_float(m[i]));
         }

@@ -25,17 +25,17 @@ bool gltf_write(const gltf_document *document, const char *directory);
 /* ---- materials ---- */
 
 typedef struct {
-    const char *name;          /* borrowed until gltf_write                                        */
-    double      base_color[3]; /* linear Rec. 709                                                  */
-    double      metallic, roughness;
-    double      specular;          /* KHR_materials_specular; 0 turns the dielectric coat off      */
-    double      emissive[3];       /* factor, [0, 1]                                               */
-    double      emissive_strength; /* radiance = factor * strength, W/(m2 sr)                      */
-    bool        double_sided;
-    double      transmission; /* KHR_materials_transmission, [0, 1]                                */
-    double      ior;
-    bool        solid;  /* KHR_materials_volume: refraction at a closed surface                    */
-    const char *extras; /* the value of "extras" as JSON text, or NULL                             */
+    const char *name;     /* borrowed until gltf_write                                        */
+    double base_color[3]; /* linear Rec. 709                                                  */
+    double metallic, roughness;
+    double specular;          /* KHR_materials_specular; 0 turns the dielectric coat off      */
+    double emissive[3];       /* factor, [0, 1]                                               */
+    double emissive_strength; /* radiance = factor * strength, W/(m2 sr)                      */
+    bool   double_sided;
+    double transmission; /* KHR_materials_transmission, [0, 1]                                */
+    double ior;
+    bool   solid; /* KHR_materials_volume: refraction at a closed surface                    */
+    const char *extras; /* the value of "extras" as JSON text, or NULL */
 } gltf_material;
 
 /* A plain Lambertian reflector: metallic 0, roughness 1, no specular term. */
@@ -63,7 +63,7 @@ void gltf_bind_to_joints(gltf_document *document, int mesh, const double *weight
 typedef enum { GLTF_IDENTITY, GLTF_TRS, GLTF_MATRIX } gltf_transform;
 
 typedef struct {
-    const char    *name; /* copied, at most 47 bytes      */
+    const char    *name;                              /* copied, at most 47 bytes      */
     int            parent, mesh, camera, light, skin; /* -1: none */
     gltf_transform transform;
     assay_vec3     translation; /* m                      */
@@ -95,7 +95,8 @@ int gltf_add_sun(gltf_document *document, const char *name, const double color[3
 typedef enum { GLTF_LINEAR, GLTF_STEP, GLTF_CUBICSPLINE } gltf_interpolation;
 typedef enum { GLTF_TRANSLATION, GLTF_ROTATION, GLTF_SCALE, GLTF_WEIGHTS } gltf_path;
 
-/* values: key_count * width numbers (width 3, 4, 3, 1 by path), three times that for CUBICSPLINE. */
+/* values: key_count * width numbers (width 3, 4, 3, 1 by path), three times that for CUBICSPLINE.
+ */
 void gltf_add_channel(gltf_document *document, int node, gltf_path path,
                       gltf_interpolation interpolation, const float *times, size_t key_count,
                       const float *values);

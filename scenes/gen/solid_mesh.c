@@ -22,10 +22,7 @@ void *tool_grow(void *array, size_t count, size_t *capacity, size_t element_size
     return moved;
 }
 
-void mesh_init(solid_mesh *mesh, bool flat)
-{
-    *mesh = (solid_mesh){.flat = flat};
-}
+void mesh_init(solid_mesh *mesh, bool flat) { *mesh = (solid_mesh){.flat = flat}; }
 
 void mesh_release(solid_mesh *mesh)
 {
@@ -40,8 +37,8 @@ uint32_t mesh_vertex(solid_mesh *mesh, assay_vec3 position, assay_vec3 normal)
     size_t capacity = mesh->vertex_capacity;
     mesh->positions =
         tool_grow(mesh->positions, mesh->vertex_count, &capacity, sizeof *mesh->positions);
-    mesh->normals = tool_grow(mesh->normals, mesh->vertex_count, &mesh->vertex_capacity,
-                              sizeof *mesh->normals);
+    mesh->normals =
+        tool_grow(mesh->normals, mesh->vertex_count, &mesh->vertex_capacity, sizeof *mesh->normals);
     mesh->positions[mesh->vertex_count] = position;
     mesh->normals[mesh->vertex_count]   = normal;
     return (uint32_t)mesh->vertex_count++;
@@ -77,7 +74,7 @@ void mesh_box(solid_mesh *mesh, assay_vec3 low, assay_vec3 high, bool inwards)
         assay_vec3 p[4];
         for (int i = 0; i < 4; i++) {
             const int corner = faces[f][inwards ? 3 - i : i];
-            p[i] = vec3(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y,
+            p[i]             = vec3(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y,
                         corner & 4 ? high.z : low.z);
         }
         mesh_quad(mesh, p[0], p[1], p[2], p[3]);
@@ -125,11 +122,11 @@ static uint32_t *halve_triangles(sphere_builder *b, uint32_t *triangles, size_t 
     size_t    capacity = 0, made = 0;
     b->pair_count = 0;
     for (size_t t = 0; t < count; t++) {
-        const uint32_t *v    = triangles + 3 * t;
-        const uint32_t  ab   = sphere_middle(b, v[0], v[1]);
-        const uint32_t  bc   = sphere_middle(b, v[1], v[2]);
-        const uint32_t  ca   = sphere_middle(b, v[2], v[0]);
-        const uint32_t four[12] = {v[0], ab, ca, ab, v[1], bc, ca, bc, v[2], ab, bc, ca};
+        const uint32_t *v        = triangles + 3 * t;
+        const uint32_t  ab       = sphere_middle(b, v[0], v[1]);
+        const uint32_t  bc       = sphere_middle(b, v[1], v[2]);
+        const uint32_t  ca       = sphere_middle(b, v[2], v[0]);
+        const uint32_t  four[12] = {v[0], ab, ca, ab, v[1], bc, ca, bc, v[2], ab, bc, ca};
         for (int i = 0; i < 12; i++) {
             finer         = tool_grow(finer, made, &capacity, sizeof *finer);
             finer[made++] = four[i];
@@ -140,17 +137,17 @@ static uint32_t *halve_triangles(sphere_builder *b, uint32_t *triangles, size_t 
 }
 
 static const uint8_t icosahedron[20][3] = {
-    {0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+    {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
     {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-    {3, 8, 9},  {4, 9, 5},  {2, 4, 11},  {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+    {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
 
 void mesh_icosphere(solid_mesh *mesh, assay_vec3 centre, double radius, int levels)
 {
-    const double   g            = 0.5 * (1.0 + sqrt(5.0));
-    sphere_builder b            = {0};
-    const double   corners[12][3] = {{-1, g, 0}, {1, g, 0},   {-1, -g, 0}, {1, -g, 0},
-                                     {0, -1, g}, {0, 1, g},   {0, -1, -g}, {0, 1, -g},
-                                     {g, 0, -1}, {g, 0, 1},   {-g, 0, -1}, {-g, 0, 1}};
+    const double   g              = 0.5 * (1.0 + sqrt(5.0));
+    sphere_builder b              = {0};
+    const double   corners[12][3] = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
+                                     {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
+                                     {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
     for (int i = 0; i < 12; i++) {
         sphere_vertex(&b, vec3(corners[i][0], corners[i][1], corners[i][2]));
     }

@@ -63,7 +63,8 @@ typedef struct {
 void mesh_arcade(solid_mesh *mesh, const arcade_shape *shape);
 
 /* A convex profile (u: radius, v: outwards, towards -z; counter-clockwise in (u, v)) drawn along a
- * half circle about (0, centre_y, z0), which it leaves straight downwards by `foot` at both ends. */
+ * half circle about (0, centre_y, z0), which it leaves straight downwards by `foot` at both ends.
+ */
 void mesh_archivolt(solid_mesh *mesh, const profile_point *profile, size_t count, int segments,
                     double centre_y, double z0, double foot);
 

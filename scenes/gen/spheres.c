@@ -52,9 +52,9 @@ gltf_document *make_spheres(void)
     int first = -1;
     for (int i = 0; i < 8; i++) {
         const int material = gltf_add_material(d, kinds[i]);
-        const int mesh = first < 0 ? gltf_add_mesh(d, kinds[i].name, &sphere, material)
-                                   : gltf_add_mesh_like(d, kinds[i].name, first, material);
-        first          = first < 0 ? mesh : first;
+        const int mesh     = first < 0 ? gltf_add_mesh(d, kinds[i].name, &sphere, material)
+                                       : gltf_add_mesh_like(d, kinds[i].name, first, material);
+        first              = first < 0 ? mesh : first;
         gltf_add_mesh_node(d, kinds[i].name, mesh,
                            vec3(1.25 * (i % 4) - 1.875, 0.5, i < 4 ? -0.625 : 0.625));
     }

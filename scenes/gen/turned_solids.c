@@ -24,8 +24,8 @@ static assay_vec3 ring_normal(const profile_point *profile, size_t low, size_t h
     if (profile[j].u == 0.0) {
         return vec3(0.0, profile[high].u > profile[low].u ? -1.0 : 1.0, 0.0);
     }
-    const assay_vec3 up = vec3_sub(ring_point(&profile[high], i, segments),
-                                   ring_point(&profile[low], i, segments));
+    const assay_vec3 up =
+        vec3_sub(ring_point(&profile[high], i, segments), ring_point(&profile[low], i, segments));
     const assay_vec3 round = vec3_sub(ring_point(&profile[j], i + 1, segments),
                                       ring_point(&profile[j], i - 1, segments));
     return vec3_normalize(vec3_cross(up, round));
@@ -50,12 +50,11 @@ void mesh_revolve(solid_mesh *mesh, const profile_point *profile, size_t count, 
     for (size_t j = 0; j + 1 < count; j++) {
         const bool     low_smooth  = j > 0 && profile[j].smooth;
         const bool     high_smooth = j + 2 < count && profile[j + 1].smooth;
-        const uint32_t below =
-            low_smooth ? above : add_ring(mesh, profile, j, j + 1, j, segments);
+        const uint32_t below = low_smooth ? above : add_ring(mesh, profile, j, j + 1, j, segments);
         above = add_ring(mesh, profile, j, high_smooth ? j + 2 : j + 1, j + 1, segments);
         const bool low_pole = profile[j].u == 0.0, high_pole = profile[j + 1].u == 0.0;
         for (int i = 0; i < segments; i++) {
-            const uint32_t k  = (uint32_t)i, next = (uint32_t)((i + 1) % segments);
+            const uint32_t k = (uint32_t)i, next = (uint32_t)((i + 1) % segments);
             const uint32_t b0 = below + (low_pole ? 0 : k), b1 = below + (low_pole ? 0 : next);
             const uint32_t t0 = above + (high_pole ? 0 : k), t1 = above + (high_pole ? 0 : next);
             if (!high_pole) {
@@ -221,8 +220,7 @@ void mesh_arcade(solid_mesh *mesh, const arcade_shape *a)
         arcade_slice(mesh, a, last, arch_point(a, bay, 0), down, down);
         for (int i = 0; i < a->segments; i++) {
             const edge_point p = arch_point(a, bay, i), q = arch_point(a, bay, i + 1);
-            arcade_slice(mesh, a, p, q,
-                         vec3_normalize(vec3(centre - p.x, a->springing - p.y, 0.0)),
+            arcade_slice(mesh, a, p, q, vec3_normalize(vec3(centre - p.x, a->springing - p.y, 0.0)),
                          vec3_normalize(vec3(centre - q.x, a->springing - q.y, 0.0)));
         }
         last = arch_point(a, bay, a->segments);
@@ -240,7 +238,7 @@ void mesh_sheet(solid_mesh *mesh, int columns, int rows,
                 assay_vec3 (*at)(const void *user, double u, double v), const void *user)
 {
     const uint32_t first = (uint32_t)mesh->vertex_count, stride = (uint32_t)columns + 1;
-    const double   step  = 1e-4;
+    const double   step = 1e-4;
     for (int j = 0; j <= rows; j++) {
         for (int i = 0; i <= columns; i++) {
             const double     u = (double)i / columns, v = (double)j / rows;

@@ -11,10 +11,7 @@
 
 /* ---- small pieces ---- */
 
-static void put_number(FILE *f, double value)
-{
-    fprintf(f, "%.9g", value + 0.0);
-}
+static void put_number(FILE *f, double value) { fprintf(f, "%.9g", value + 0.0); }
 
 static void put_numbers(FILE *f, const char *key, const double *values, int count)
 {
@@ -67,10 +64,10 @@ static bool is_white(const gltf_material *m)
 
 static void put_extensions_used(FILE *f, const gltf_document *d)
 {
-    static const char *const names[6] = {"KHR_lights_punctual",    "KHR_materials_emissive_strength",
-                                         "KHR_materials_ior",      "KHR_materials_specular",
-                                         "KHR_materials_transmission", "KHR_materials_volume"};
-    bool                     used[6]  = {d->light_count > 0};
+    static const char *const names[6] = {
+        "KHR_lights_punctual",    "KHR_materials_emissive_strength", "KHR_materials_ior",
+        "KHR_materials_specular", "KHR_materials_transmission",      "KHR_materials_volume"};
+    bool used[6] = {d->light_count > 0};
     for (size_t i = 0; i < d->material_count; i++) {
         const gltf_material *m = &d->materials[i];
         used[1] |= m->emissive_strength != 1.0;
@@ -281,8 +278,11 @@ static void put_accessor(FILE *f, const gltf_document *d, size_t index)
     fprintf(f,
             "    {\"bufferView\": %d, \"byteOffset\": %zu, \"componentType\": %d, \"count\": %zu, "
             "\"type\": \"%s\"",
-            view_index(d, a->view), a->offset, a->is_u16 ? 5123 : a->is_u8 ? 5121 : 5126, a->count,
-            a->type);
+            view_index(d, a->view), a->offset,
+            a->is_u16  ? 5123
+            : a->is_u8 ? 5121
+                       : 5126,
+            a->count, a->type);
     if (a->bound_count) {
         put_bounds(f, "min", a->low, a->bound_count);
         put_bounds(f, "max", a->high, a->bound_count);

@@ -7,6 +7,7 @@
 #define ASSAY_CORE_NUMERICS_H
 
 #include <math.h>
+#include <stdint.h>
 #include <sleef.h>
 
 #define ASSAY_PI 3.14159265358979323846
@@ -27,6 +28,16 @@ static inline double assay_expm1(double x) { return Sleef_cinz_expm1d1_u10purec(
 static inline double assay_log(double x) { return Sleef_cinz_logd1_u10purec(x); }
 static inline double assay_log1p(double x) { return Sleef_cinz_log1pd1_u10purec(x); }
 static inline double assay_pow(double x, double y) { return Sleef_cinz_powd1_u10purec(x, y); }
+
+/* floor without a call: without SSE4.1, which is not asked for, floor is a function. */
+static inline double assay_floor(double x)
+{
+    if (!(fabs(x) < 0x1p52)) {
+        return x; /* whole already, or no number */
+    }
+    const double truncated = (double)(int64_t)x;
+    return truncated > x ? truncated - 1.0 : truncated;
+}
 
 typedef struct {
     double sin, cos;

@@ -41,6 +41,7 @@ static assay_status fail_format(const hdr_job *job, const char *what)
 static assay_status read_line(hdr_job *job, char line_out[MAX_HEADER_LINE])
 {
     size_t length = 0;
+    line_out[0]   = 0;
     while (job->at < job->count && job->bytes[job->at] != '\n') {
         if (length + 1 == MAX_HEADER_LINE || job->bytes[job->at] == 0) {
             return fail_format(job, "a header line is too long or not text");

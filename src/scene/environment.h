@@ -1,15 +1,20 @@
 /* environment.h - light from infinitely far: a latitude-longitude map.
  *
- * Row 0 looks to +Y; the middle column of the map looks to -Z, and columns go to the right as seen
- * from inside ([docs/conventions]).  Between texel centres radiance is constant (a texel is a patch
- * of the sphere), so that importance sampling is exact and integrals are sums. */
+ * At x in [0, 1) from the left and y in [0, 1) from the top of the map, with phi = 2 pi (x - 1/2)
+ * and theta = pi y, the direction is (sin theta sin phi, cos theta, -sin theta cos phi): the top
+ * row looks to +Y, the middle column to -Z, and columns go to the right as seen from inside (-Z,
+ * +X, +Z).  The rotation turns the map about +Y, counter-clockwise as seen from above.
+ *
+ * A texel is a patch of the sphere with constant radiance, so that importance sampling is exact and
+ * integrals are sums. */
 #ifndef ASSAY_SCENE_ENVIRONMENT_H
 #define ASSAY_SCENE_ENVIRONMENT_H
 
 #include "scene/scene_data.h"
 
 /* Takes the channels R, G, B of an image; scale and rotation as in assay_scene_options.
- * Errors: FORMAT (no R, G, B; negative, NaN or infinite radiance), LIMIT, MEMORY. */
+ * path is for messages.  Errors: FORMAT (no R, G, B; negative, NaN or infinite radiance), LIMIT
+ * (over 2^27 texels, or radiance too large to sum), MEMORY. */
 struct assay_image;
 assay_status assay_environment_create(assay_context *context, const struct assay_image *image,
                                       double scale, double rotation, const char *path,

@@ -32,12 +32,12 @@ static inline double wrap_coordinate(double t, assay_wrap wrap)
     switch (wrap) {
     case ASSAY_WRAP_CLAMP: return t < 0.0 ? 0.0 : t > 1.0 ? 1.0 : t;
     case ASSAY_WRAP_MIRROR: {
-        const double folded = t - 2.0 * floor(0.5 * t);
+        const double folded = t - 2.0 * assay_floor(0.5 * t);
         return folded > 1.0 ? 2.0 - folded : folded;
     }
     case ASSAY_WRAP_REPEAT: break;
     }
-    return t - floor(t);
+    return t - assay_floor(t);
 }
 
 static inline uint32_t nearest_texel(double t, uint32_t size)
@@ -55,7 +55,7 @@ typedef struct {
 static inline texel_pair enclosing_texels(double t, uint32_t size, assay_wrap wrap)
 {
     const double   x       = t * size - 0.5;
-    const double   below   = floor(x);
+    const double   below   = assay_floor(x);
     const int32_t  low     = (int32_t)below;
     const bool     repeats = wrap == ASSAY_WRAP_REPEAT;
     const uint32_t last    = size - 1;
@@ -71,9 +71,10 @@ static inline void load_texel(const assay_texture_image *image, uint32_t x, uint
     const size_t at = ((size_t)y * image->width + x) * 4;
     if (image->bits == 8) {
         const uint8_t *texel = (const uint8_t *)image->texels + at;
-        for (int c = 0; c < 4; c++) {
-            rgba_out[c] = srgb && c < 3 ? assay_srgb_decode8(texel[c]) : texel[c] / 255.0;
+        for (int c = 0; c < 3; c++) {
+            rgba_out[c] = srgb ? assay_srgb_decode8(texel[c]) : texel[c] / 255.0;
         }
+        rgba_out[3] = texel[3] == 255 ? 1.0 : texel[3] / 255.0;
     } else {
         const uint16_t *texel = (const uint16_t *)image->texels + at;
         for (int c = 0; c < 4; c++) {
