@@ -138,7 +138,8 @@ gltf_document *make_animated(void)
         gltf_create("animated", "One part for every kind of motion, four seconds; see README.md");
     solid_mesh floor, panel;
     mesh_init(&floor, true);
-    mesh_quad(&floor, vec3(-5, 0, 3), vec3(5, 0, 3), vec3(5, 0, -3), vec3(-5, 0, -3));
+    mesh_quad(&floor, vec3(-5, -0.125, 3), vec3(5, -0.125, 3), vec3(5, -0.125, -3),
+              vec3(-5, -0.125, -3));
     gltf_add_mesh_node(d, "floor",
                        gltf_add_mesh(d, "floor", &floor, grey(d, "floor", 0.5, 0.5, 0.5)), origin);
     mesh_release(&floor);

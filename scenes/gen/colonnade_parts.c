@@ -82,7 +82,8 @@ void archivolt_solid(solid_mesh *mesh)
                                      {1.12, 0.020, false, 0.0}, {1.07, 0.045, true, 0.0},
                                      {0.97, 0.045, true, 0.0},  {0.92, 0.020, false, 0.0}};
     mesh_init(mesh, false);
-    mesh_archivolt(mesh, profile, COUNT(profile), 16, 0.0, -0.5 * WALL, 0.015);
+    /* Unequal feet: in the corners of the court two end in one pier, and not in one plane. */
+    mesh_archivolt(mesh, profile, COUNT(profile), 16, -0.5 * WALL, 0.015, 0.010);
 }
 
 /* Flat half pillars on the outer wall. */
@@ -92,7 +93,7 @@ void pilaster_solid(solid_mesh *mesh, const storey_shape *storey)
     const double height = springing - storey->base + (storey->base > 0.0 ? 1.35 : 0.95);
     mesh_init(mesh, false);
     mesh_box(mesh, vec3(-0.24, -SINK, front), vec3(0.24, height, back), false);
-    mesh_box(mesh, vec3(-0.29, -2.0 * SINK, front - 0.05), vec3(0.29, 0.3, back + 0.01), false);
+    mesh_box(mesh, vec3(-0.29, -1.5 * SINK, front - 0.05), vec3(0.29, 0.3, back + 0.01), false);
     mesh_box(mesh, vec3(-0.30, height - 0.25, front - 0.06), vec3(0.30, height + SINK, back + 0.01),
              false);
 }
@@ -112,7 +113,7 @@ void pier_solid(solid_mesh *mesh)
 void beam_solid(solid_mesh *mesh)
 {
     mesh_init(mesh, false);
-    mesh_box(mesh, vec3(-0.1, 9.93, 0.25), vec3(0.1, 10.25, AISLE + SINK), false);
+    mesh_box(mesh, vec3(-0.1, 9.93, 0.28), vec3(0.1, 10.25, AISLE + SINK), false);
 }
 
 /* A frame with two leaves, on the outer wall. */

@@ -62,11 +62,11 @@ typedef struct {
 } arcade_shape;
 void mesh_arcade(solid_mesh *mesh, const arcade_shape *shape);
 
-/* A convex profile (u: radius, v: outwards, towards -z; counter-clockwise in (u, v)) drawn along a
- * half circle about (0, centre_y, z0), which it leaves straight downwards by `foot` at both ends.
+/* A convex profile (u: radius, v: outwards, towards -z; counter-clockwise in (u, v)) drawn along
+ * the upper half circle about (0, 0, z0), which it leaves straight downwards by a foot at each end.
  */
 void mesh_archivolt(solid_mesh *mesh, const profile_point *profile, size_t count, int segments,
-                    double centre_y, double z0, double foot);
+                    double z0, double right_foot, double left_foot);
 
 /* A rectangular sheet of columns * rows quads; at(user, u, v), u and v in [0, 1], gives its points.
  * Its front is where u to the right and v upwards are seen as such. */

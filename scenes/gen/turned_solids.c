@@ -113,36 +113,42 @@ void mesh_rectangular_ring(solid_mesh *mesh, const profile_point *profile, size_
     }
 }
 
-/* Station s of the path of an archivolt: the frame's direction of u, and the shift downwards. */
+/* A half circle that goes on straight downwards at both ends. */
+typedef struct {
+    int    segments;
+    double z0, right_foot, left_foot; /* m */
+} arch_path;
+
+/* Station s of the path of an archivolt: the frame's direction of u, and the shift upwards. */
 typedef struct {
     double cos, sin, shift;
 } arch_station;
 
-static arch_station archivolt_station(int s, int segments, double foot)
+static arch_station archivolt_station(const arch_path *path, int s)
 {
     if (s == 0) {
-        return (arch_station){1.0, 0.0, -foot};
+        return (arch_station){1.0, 0.0, -path->right_foot};
     }
-    if (s == segments + 2) {
-        return (arch_station){-1.0, 0.0, -foot};
+    if (s == path->segments + 2) {
+        return (arch_station){-1.0, 0.0, -path->left_foot};
     }
-    const assay_sincos a = assay_sincos_turns(0.5 * (s - 1) / segments);
+    const assay_sincos a = assay_sincos_turns(0.5 * (s - 1) / path->segments);
     return (arch_station){a.cos, a.sin, 0.0};
 }
 
-static assay_vec3 archivolt_point(const profile_point *p, arch_station s, double centre_y,
-                                  double z0)
+static assay_vec3 archivolt_point(const arch_path *path, const profile_point *p, arch_station s)
 {
-    return vec3(p->u * s.cos, centre_y + s.shift + p->u * s.sin, z0 - p->v);
+    return vec3(p->u * s.cos, s.shift + p->u * s.sin, path->z0 - p->v);
 }
 
 /* Closes an end with a fan (the profile is convex); `reversed` at the near one. */
-static void archivolt_end(solid_mesh *mesh, const profile_point *profile, size_t count,
-                          arch_station s, double centre_y, double z0, bool reversed)
+static void archivolt_end(solid_mesh *mesh, const arch_path *path, const profile_point *profile,
+                          size_t count, int station, bool reversed)
 {
-    const uint32_t first = (uint32_t)mesh->vertex_count;
+    const arch_station s     = archivolt_station(path, station);
+    const uint32_t     first = (uint32_t)mesh->vertex_count;
     for (size_t j = 0; j < count; j++) {
-        mesh_vertex(mesh, archivolt_point(&profile[j], s, centre_y, z0), vec3(0.0, -1.0, 0.0));
+        mesh_vertex(mesh, archivolt_point(path, &profile[j], s), vec3(0.0, -1.0, 0.0));
     }
     for (uint32_t j = 1; j + 1 < count; j++) {
         mesh_triangle(mesh, first, first + (reversed ? j + 1 : j), first + (reversed ? j : j + 1));
@@ -150,27 +156,27 @@ static void archivolt_end(solid_mesh *mesh, const profile_point *profile, size_t
 }
 
 void mesh_archivolt(solid_mesh *mesh, const profile_point *profile, size_t count, int segments,
-                    double centre_y, double z0, double foot)
+                    double z0, double right_foot, double left_foot)
 {
+    const arch_path path = {segments, z0, right_foot, left_foot};
     for (int s = 0; s < segments + 2; s++) {
-        const arch_station near = archivolt_station(s, segments, foot);
-        const arch_station far  = archivolt_station(s + 1, segments, foot);
+        const arch_station near = archivolt_station(&path, s);
+        const arch_station far  = archivolt_station(&path, s + 1);
         for (size_t e = 0; e < count; e++) {
             const uint32_t first = (uint32_t)mesh->vertex_count;
             for (int i = 0; i < 4; i++) {
                 const size_t        at = i == 1 || i == 2 ? (e + 1) % count : e;
                 const arch_station  st = i < 2 ? near : far;
                 const profile_point n  = corner_normal(profile, count, e, at);
-                mesh_vertex(mesh, archivolt_point(&profile[at], st, centre_y, z0),
+                mesh_vertex(mesh, archivolt_point(&path, &profile[at], st),
                             vec3(n.u * st.cos, n.u * st.sin, -n.v));
             }
             mesh_triangle(mesh, first, first + 1, first + 2);
             mesh_triangle(mesh, first, first + 2, first + 3);
         }
     }
-    archivolt_end(mesh, profile, count, archivolt_station(0, segments, foot), centre_y, z0, true);
-    archivolt_end(mesh, profile, count, archivolt_station(segments + 2, segments, foot), centre_y,
-                  z0, false);
+    archivolt_end(mesh, &path, profile, count, 0, true);
+    archivolt_end(mesh, &path, profile, count, segments + 2, false);
 }
 
 /* ---- arcade ---- */

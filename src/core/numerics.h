@@ -14,7 +14,7 @@
 #define ASSAY_INV_PI 0.31830988618379067154
 #define ASSAY_TWO_PI 6.28318530717958647693
 
-/* All within 1.0 unit of the last place. */
+/* All but assay_sincos_turns within 1.0 unit of the last place. */
 static inline double assay_sin(double x) { return Sleef_cinz_sind1_u10purec(x); }
 static inline double assay_cos(double x) { return Sleef_cinz_cosd1_u10purec(x); }
 static inline double assay_tan(double x) { return Sleef_cinz_tand1_u10purec(x); }
@@ -43,10 +43,11 @@ typedef struct {
     double sin, cos;
 } assay_sincos;
 
-/* sin and cos of 2 pi x: the azimuth of a uniform number, without the rounding of 2 pi. */
+/* sin and cos of 2 pi x, within 3.5 units of the last place: the azimuth of a uniform number, without
+ * the rounding of 2 pi. */
 static inline assay_sincos assay_sincos_turns(double x)
 {
-    const Sleef_double_2 s = Sleef_cinz_sincospid1_u05purec(2.0 * x);
+    const Sleef_double_2 s = Sleef_cinz_sincospid1_u35purec(2.0 * x);
     return (assay_sincos){s.x, s.y};
 }
 

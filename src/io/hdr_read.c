@@ -41,7 +41,6 @@ static assay_status fail_format(const hdr_job *job, const char *what)
 static assay_status read_line(hdr_job *job, char line_out[MAX_HEADER_LINE])
 {
     size_t length = 0;
-    line_out[0]   = 0;
     while (job->at < job->count && job->bytes[job->at] != '\n') {
         if (length + 1 == MAX_HEADER_LINE || job->bytes[job->at] == 0) {
             return fail_format(job, "a header line is too long or not text");
@@ -86,9 +85,9 @@ static bool begins(const char *line, const char *word, const char **rest_out)
 
 static assay_status read_header(hdr_job *job)
 {
-    char         line[MAX_HEADER_LINE];
-    bool         has_format = false;
-    assay_status status     = read_line(job, line); /* "#?RADIANCE", "#?RGBE" */
+    char         line[MAX_HEADER_LINE] = {0};
+    bool         has_format            = false;
+    assay_status status                = read_line(job, line); /* "#?RADIANCE", "#?RGBE" */
     while (status == ASSAY_OK) {
         const char *rest = NULL;
         status           = read_line(job, line);
@@ -129,9 +128,9 @@ static int read_size(const char **text)
 
 static assay_status read_resolution(hdr_job *job)
 {
-    char         line[MAX_HEADER_LINE];
-    const char  *text   = NULL;
-    assay_status status = read_line(job, line);
+    char         line[MAX_HEADER_LINE] = {0};
+    const char  *text                  = NULL;
+    assay_status status                = read_line(job, line);
     if (status != ASSAY_OK) {
         return status;
     }

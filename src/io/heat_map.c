@@ -45,7 +45,7 @@ assay_rgb assay_heat_color(double t)
 typedef struct {
     assay_channel *pairs;
     double        *floors; /* 1e-2 |mean of a| */
-    int            count;
+    size_t         count;
 } channel_pairs;
 
 static void add_pair(channel_pairs *list, const assay_image *a, const assay_image *b,
@@ -89,7 +89,7 @@ static assay_status choose_pairs(const assay_image *a, const assay_image *b, cha
 static double pixel_error(const channel_pairs *list, size_t pixel)
 {
     double sum = 0.0;
-    for (int i = 0; i < list->count; i++) {
+    for (size_t i = 0; i < list->count; i++) {
         const double a = assay_channel_value(&list->pairs[2 * i], pixel);
         const double b = assay_channel_value(&list->pairs[2 * i + 1], pixel);
         if (isfinite(a) && isfinite(b)) {
@@ -99,7 +99,7 @@ static double pixel_error(const channel_pairs *list, size_t pixel)
             return INFINITY;
         }
     }
-    return sum / list->count;
+    return sum / (double)list->count;
 }
 
 static assay_status draw(const channel_pairs *list, double full_scale, assay_image *map)

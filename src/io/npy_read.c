@@ -193,12 +193,13 @@ static assay_status check_header(assay_context *context, const char *name, npy_h
                           name, (unsigned long long)rows, (unsigned long long)columns,
                           (unsigned long long)ASSAY_ARRAY_MAX_VALUES);
     }
-    *item_bytes_out = wide ? 8 : 4;
-    if (rows * columns * *item_bytes_out != bytes_left) {
+    *item_bytes_out       = wide ? 8 : 4;
+    const uint64_t needed = rows * columns * *item_bytes_out;
+    if (needed != bytes_left) {
         return assay_fail(context, ASSAY_ERR_FORMAT,
                           "%s: %llu x %llu values need %llu bytes, and %zu are there", name,
                           (unsigned long long)rows, (unsigned long long)columns,
-                          (unsigned long long)(rows * columns * *item_bytes_out), bytes_left);
+                          (unsigned long long)needed, bytes_left);
     }
     return ASSAY_OK;
 }

@@ -3,6 +3,7 @@
  *
  * Values are copied byte by byte, so the file's alignment does not matter; the byte order is that
  * of glTF and of every machine that is supported, little-endian. */
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -169,8 +170,8 @@ static assay_status read_element(const assay_gltf_loader *loader, const assay_gl
                                  const assay_gltf_use *use, const uint8_t *from, uint64_t element,
                                  const target *to, uint32_t slot)
 {
-    const uint32_t size = component_bytes(a->component), count = a->rows * a->columns;
-    for (uint32_t c = 0; c < count; c++) {
+    const size_t size = component_bytes(a->component), count = (size_t)a->rows * a->columns;
+    for (size_t c = 0; c < count; c++) {
         const size_t at = (size_t)slot * to->stride + c;
         if (to->whole) {
             to->whole[at] = read_unsigned(from + c * size, a->component);
@@ -264,6 +265,7 @@ assay_status assay_gltf_read_floats(assay_gltf_loader *loader, uint32_t accessor
     if (status != ASSAY_OK) {
         return status;
     }
+    assert(*values);
     const target to = {.floats = *values + first, .stride = stride};
     return read_elements(loader, accessor, use, chosen, count, &to);
 }
@@ -277,6 +279,7 @@ assay_status assay_gltf_read_whole(assay_gltf_loader *loader, uint32_t accessor,
     if (status != ASSAY_OK) {
         return status;
     }
+    assert(*values);
     const target to = {.whole = *values + first, .stride = stride};
     return read_elements(loader, accessor, use, chosen, count, &to);
 }

@@ -2,6 +2,7 @@
  *
  * Invariant: times of a track rise strictly, its values are finite and as many as its keys ask for,
  * and a rotation's keys are no zero quaternions. */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -50,6 +51,7 @@ static assay_status read_doubles(const reading *r, uint32_t accessor, const char
         }
     }
     for (uint64_t i = 0; i < count && status == ASSAY_OK; i++) {
+        assert(floats);
         (*values_out)[i] = floats[i];
     }
     assay_release(loader->context, floats);

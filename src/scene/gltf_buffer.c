@@ -59,13 +59,14 @@ assay_status assay_gltf_view_bytes(const assay_gltf_loader *loader, uint32_t vie
 {
     const assay_gltf_view  *v      = &loader->document.views[view];
     const assay_gltf_bytes *buffer = &loader->buffers[v->buffer];
+    const uint64_t          end    = v->offset + v->length;
     if (v->offset > buffer->count || v->length > buffer->count - v->offset) {
         return assay_gltf_fail(
             loader, ASSAY_ERR_FORMAT,
             "bufferViews/%u: bytes %llu to %llu lie beyond buffers/%u, which has "
             "%llu",
-            view, (unsigned long long)v->offset, (unsigned long long)(v->offset + v->length),
-            v->buffer, (unsigned long long)buffer->count);
+            view, (unsigned long long)v->offset, (unsigned long long)end, v->buffer,
+            (unsigned long long)buffer->count);
     }
     *bytes_out = buffer->bytes + v->offset;
     *count_out = v->length;

@@ -258,7 +258,7 @@ static bool open_value(json_reader *r, assay_json_type type)
         return refuse(r, "objects and arrays lie deeper in each other than 128 levels");
     }
     assay_json *node     = add_value(r, &scratch, type);
-    r->open[r->depth]    = node;
+    r->open[r->depth]    = r->nodes ? node : NULL;
     r->last[r->depth]    = NULL;
     r->closing[r->depth] = type == ASSAY_JSON_OBJECT ? '}' : ']';
     r->depth++;

@@ -112,12 +112,12 @@ static assay_status count_joint_sets(const reading *r, uint32_t *count_out)
 
 static assay_status check_weights(const reading *r)
 {
-    const uint32_t width = r->to->joint_sets * 4;
+    const size_t width = (size_t)r->to->joint_sets * 4;
     for (uint32_t v = 0; v < r->to->vertex_count; v++) {
-        const float *w   = &r->to->weights[(size_t)v * width];
+        const float *w   = &r->to->weights[v * width];
         double       sum = 0.0;
         bool         all = true;
-        for (uint32_t k = 0; k < width; k++) {
+        for (size_t k = 0; k < width; k++) {
             sum += w[k];
             all = all && w[k] >= 0.0f;
         }

@@ -219,14 +219,16 @@ static assay_status place_cameras(const assay_gltf_loader *loader)
     return ASSAY_OK;
 }
 
+typedef assay_status (*node_step)(const assay_gltf_loader *);
+
 assay_status assay_gltf_load_nodes(assay_gltf_loader *loader)
 {
-    assay_scene *scene                                       = loader->scene;
-    scene->nodes                                             = loader->document.nodes;
-    scene->node_count                                        = loader->document.node_count;
-    loader->document.nodes                                   = NULL;
-    assay_status (*const steps[])(const assay_gltf_loader *) = {
-        check_nodes, check_weights, set_parents, order_nodes, mark_roots};
+    assay_scene *scene             = loader->scene;
+    scene->nodes                   = loader->document.nodes;
+    scene->node_count              = loader->document.node_count;
+    loader->document.nodes         = NULL;
+    static const node_step steps[] = {check_nodes, check_weights, set_parents, order_nodes,
+                                      mark_roots};
     for (int i = 0; i < 5; i++) {
         const assay_status status = steps[i](loader);
         if (status != ASSAY_OK) {

@@ -44,12 +44,12 @@ typedef enum {
 /* One member of an object. */
 typedef struct {
     const char      *member;
-    assay_gltf_kind  kind;
-    bool             required;
     const char      *what;
+    double           minimum, maximum;
+    assay_gltf_kind  kind;
     assay_gltf_array array;
     int              count;
-    double           minimum, maximum;
+    bool             required;
     bool             above; /* greater than the minimum, not equal to it */
 } assay_gltf_rule;
 
@@ -57,9 +57,9 @@ typedef struct {
  * or refused where the type is strict.  An extension's object is the type "material.KHR_...". */
 typedef struct {
     const char            *name;
-    bool                   strict;
     const assay_gltf_rule *rules;
     int                    rule_count;
+    bool                   strict;
 } assay_gltf_type;
 
 /* NULL where there is no such type. */

@@ -336,11 +336,11 @@ static const assay_gltf_rule ward_rules[] = {
 
 #define TYPE(name, rules)                                                                          \
     {                                                                                              \
-        name, false, rules, COUNT_OF(rules)                                                        \
+        name, rules, COUNT_OF(rules), false                                                        \
     }
 #define STRICT_TYPE(name, rules)                                                                   \
     {                                                                                              \
-        name, true, rules, COUNT_OF(rules)                                                         \
+        name, rules, COUNT_OF(rules), true                                                         \
     }
 
 static const assay_gltf_type types[] = {
@@ -377,7 +377,7 @@ static const assay_gltf_type types[] = {
     TYPE("material.KHR_materials_specular", specular_rules),
     TYPE("material.KHR_materials_transmission", transmission_rules),
     TYPE("material.KHR_materials_volume", volume_rules),
-    {"material.KHR_materials_unlit", false, NULL, 0},
+    {"material.KHR_materials_unlit", NULL, 0, false},
     TYPE("root.KHR_lights_punctual", lights_rules),
     TYPE("light", light_rules),
     TYPE("spot", spot_rules),

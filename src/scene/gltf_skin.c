@@ -1,6 +1,7 @@
 /* gltf_skin.c - skins, and whether the meshes under them fit.
  *
  * Invariant: every joint that a vertex of a skinned instance gives weight to exists. */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -36,6 +37,7 @@ static assay_status read_matrices(assay_gltf_loader *loader, uint32_t index,
         }
     }
     for (size_t i = 0; status == ASSAY_OK && i < (size_t)to->joint_count * 16; i++) {
+        assert(values);
         to->inverse_bind[i] = values[i];
     }
     assay_release(loader->context, values);

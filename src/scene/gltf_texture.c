@@ -73,7 +73,7 @@ static assay_status load_image(assay_gltf_loader *loader, const assay_json *json
                                  "%s: with it the images have more than %llu bytes when decoded",
                                  place, (unsigned long long)ASSAY_GLTF_MAX_TEXEL_BYTES);
     }
-    return status;
+    return status != ASSAY_OK ? status : assay_texture_image_tile(loader->context, image);
 }
 
 static assay_status load_images(assay_gltf_loader *loader, bool *used)

@@ -13,10 +13,11 @@ typedef enum { ASSAY_WRAP_REPEAT, ASSAY_WRAP_CLAMP, ASSAY_WRAP_MIRROR } assay_wr
 
 /* Decoded pixels, row 0 on top (v = 0), RGBA interleaved. */
 typedef struct {
-    char     *name;  /* for messages: "images/3 (bricks.png)" */
-    uint32_t  width, height;
-    uint8_t   bits;  /* 8 or 16 a component                   */
-    void     *texels;
+    char    *name; /* for messages: "images/3 (bricks.png)" */
+    uint32_t width, height;
+    uint8_t  bits;  /* 8 or 16 a component                   */
+    bool     tiled; /* false: row by row; true: by tiles of 4 x 4, see texture.h */
+    void    *texels;
 } assay_texture_image;
 
 typedef struct {
@@ -28,16 +29,17 @@ typedef struct {
 /* A material's use of a texture. texture == ASSAY_NONE: not textured. */
 typedef struct {
     uint32_t texture;
-    uint32_t texcoord;              /* 0 or 1                                              */
+    uint32_t texcoord; /* 0 or 1                                              */
     double   offset[2], rotation, scale[2]; /* KHR_texture_transform                       */
-    double   uv_matrix[2][3];       /* the same, ready to apply                            */
+    double   uv_matrix[2][3]; /* the same, ready to apply                            */
 } assay_texture_ref;
 
 typedef enum { ASSAY_ALPHA_OPAQUE, ASSAY_ALPHA_MASK, ASSAY_ALPHA_BLEND } assay_alpha_mode;
 
 typedef enum {
     ASSAY_MATERIAL_PBR,   /* glTF metallic-roughness with extensions   */
-    ASSAY_MATERIAL_UNLIT, /* KHR_materials_unlit: emits its base colour to the camera, scatters nothing */
+    ASSAY_MATERIAL_UNLIT, /* KHR_materials_unlit: emits its base colour to the camera, scatters
+                             nothing */
     ASSAY_MATERIAL_PHONG, /* extras.assay {"brdf":"phong"}             */
     ASSAY_MATERIAL_WARD,  /* extras.assay {"brdf":"ward"}              */
     ASSAY_MATERIAL_WARD_PUBLISHED,
@@ -50,22 +52,21 @@ typedef struct {
     double               base_color[4];
     double               metallic, roughness;
     double               normal_scale;
-    assay_rgb            emissive;          /* factor * strength, W/(m2 sr) */
+    assay_rgb            emissive; /* factor * strength, W/(m2 sr) */
     assay_alpha_mode     alpha_mode;
     double               alpha_cutoff;
     bool                 double_sided;
     bool                 emission_two_sided; /* as the file says, even where force_diffuse made the
                                                 material double_sided                               */
-    double               ior, specular_factor, transmission;
-    assay_rgb            specular_color;
-    bool                 solid;             /* a volume lies behind: refraction            */
-    double               attenuation_distance; /* m, INFINITY without                      */
-    assay_rgb            attenuation_color;
-    double               exponent;          /* Phong                                       */
-    double               alpha_x, alpha_y;  /* Ward                                        */
-    assay_texture_ref    base_color_texture, metallic_roughness_texture, normal_texture,
-                         emissive_texture, specular_texture, specular_color_texture,
-                         transmission_texture;
+    double            ior, specular_factor, transmission;
+    assay_rgb         specular_color;
+    bool              solid;                /* a volume lies behind: refraction            */
+    double            attenuation_distance; /* m, INFINITY without                      */
+    assay_rgb         attenuation_color;
+    double            exponent;         /* Phong                                       */
+    double            alpha_x, alpha_y; /* Ward                                        */
+    assay_texture_ref base_color_texture, metallic_roughness_texture, normal_texture,
+        emissive_texture, specular_texture, specular_color_texture, transmission_texture;
 } assay_material;
 
 #endif

@@ -157,6 +157,9 @@ struct assay_scene {
     char               *path;
     assay_scene_options options;
     char                digest[65];
+    bool                is_static;      /* no animation: every time looks the same           */
+    bool                camera_is_made; /* the only camera is one that frames the scene      */
+    bool                warnings_lost;  /* memory was refused for one                        */
 
     assay_texture_image *images;
     assay_texture       *textures;
@@ -169,19 +172,15 @@ struct assay_scene {
     assay_light_desc    *lights;
     uint32_t image_count, texture_count, material_count, mesh_count, node_count, skin_count,
         animation_count, camera_count, light_count;
+    uint32_t warning_count, extension_count;
+    uint32_t instance_count; /* nodes in the scene with a mesh             */
     char   **warnings;
-    uint32_t warning_count;
+    char   **extensions; /* extensionsUsed of the file, the first few  */
     size_t   warning_capacity;
-
-    char   **extensions; /* extensionsUsed of the file, the first few */
-    uint32_t extension_count;
-    bool     warnings_lost; /* memory was refused for one */
 
     assay_environment *environment; /* NULL: the constant options.background */
 
-    uint32_t *node_order;     /* all nodes, parents before children         */
-    uint32_t  instance_count; /* nodes in the scene with a mesh             */
-    bool      is_static;      /* no animation: every time looks the same    */
+    uint32_t *node_order; /* all nodes, parents before children */
 
     /* scratch of an evaluation */
     assay_pose   *poses;          /* node_count: animated T, R, S            */
@@ -192,16 +191,13 @@ struct assay_scene {
     /* at `time` */
     double                time;
     assay_shape          *shapes;
-    uint32_t              shape_count;
-    float                *positions; /* vertex_count * 3, world, m                             */
-    uint32_t             *indices;   /* triangle_count * 3, into positions                     */
-    uint32_t             *triangle_shape; /* triangle_count                                    */
-    uint32_t              vertex_count, triangle_count;
+    float                *positions;      /* vertex_count * 3, world, m                         */
+    uint32_t             *indices;        /* triangle_count * 3, into positions                 */
+    uint32_t             *triangle_shape; /* triangle_count                                     */
     assay_punctual_light *punctual;
-    uint32_t              punctual_count;
     assay_camera         *world_cameras;
-    uint32_t              world_camera_count; /* at least 1: one that frames the scene if none */
-    bool                  camera_is_made;     /* that one                                      */
+    uint32_t              shape_count, vertex_count, triangle_count, punctual_count;
+    uint32_t              world_camera_count; /* at least 1: one that frames the scene if none  */
     assay_vec3            bounds_min, bounds_max;
 };
 

@@ -1,6 +1,7 @@
 /* scene_load.c - a scene from a file or from memory: the steps in their order.
  *
  * Invariant: either a whole scene comes out, or nothing does and everything is released. */
+#include <assert.h>
 #include <locale.h>
 #include <math.h>
 #include <stdio.h>
@@ -146,9 +147,11 @@ static assay_status load_environment(assay_gltf_loader *loader)
     return status;
 }
 
+typedef assay_status (*load_step)(assay_gltf_loader *);
+
 static assay_status load_all(assay_gltf_loader *loader)
 {
-    assay_status (*const steps[])(assay_gltf_loader *) = {
+    static const load_step steps[] = {
         assay_gltf_load_buffers,
         assay_gltf_load_lights,
         assay_gltf_load_materials,
@@ -273,6 +276,7 @@ static assay_status load(assay_context *context, const uint8_t *bytes, size_t co
     if (status != ASSAY_OK) {
         return status;
     }
+    assert(loader.scene);
     loader.file = loader.scene->path;
     assay_hash_start(&loader.hash);
     if (bytes) {

@@ -68,7 +68,7 @@ static inline texel_pair enclosing_texels(double t, uint32_t size, assay_wrap wr
 static inline void load_texel(const assay_texture_image *image, uint32_t x, uint32_t y, bool srgb,
                               double rgba_out[4])
 {
-    const size_t at = ((size_t)y * image->width + x) * 4;
+    const size_t at = assay_texel_offset(image, x, y);
     if (image->bits == 8) {
         const uint8_t *texel = (const uint8_t *)image->texels + at;
         for (int c = 0; c < 3; c++) {

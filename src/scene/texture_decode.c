@@ -81,6 +81,28 @@ assay_status assay_texture_image_decode(assay_context *context, const uint8_t *b
     return ASSAY_OK;
 }
 
+assay_status assay_texture_image_tile(assay_context *context, assay_texture_image *image)
+{
+    const size_t        texel = image->bits / 2;
+    const size_t        tiles = (size_t)((image->width + 3) >> 2) * ((image->height + 3) >> 2);
+    assay_texture_image tiled = *image;
+    tiled.tiled               = true;
+    tiled.texels              = assay_allocate(context, tiles * 16, texel);
+    if (!tiled.texels) {
+        return assay_fail_memory(context, image->name);
+    }
+    for (uint32_t y = 0; y < image->height; y++) {
+        for (uint32_t x = 0; x < image->width; x++) {
+            memcpy((char *)tiled.texels + assay_texel_offset(&tiled, x, y) * (texel / 4),
+                   (const char *)image->texels + assay_texel_offset(image, x, y) * (texel / 4),
+                   texel);
+        }
+    }
+    assay_release(context, image->texels);
+    *image = tiled;
+    return ASSAY_OK;
+}
+
 void assay_texture_image_release(assay_context *context, assay_texture_image *image)
 {
     assay_release(context, image->texels);

@@ -81,7 +81,7 @@ static void make(one_triangle *t)
     t->indices[0] = 1;
     t->indices[1] = 2;
     t->indices[2] = 3;
-    t->image      = (assay_texture_image){NULL, 1, 1, 8, t->texel};
+    t->image      = (assay_texture_image){.width = 1, .height = 1, .bits = 8, .texels = t->texel};
     t->shape      = (assay_shape){
              .triangle_count = 1, .first_vertex = 1, .vertex_count = 3, .primitive = &t->primitive};
     assay_material *m = &t->material;

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/alloc.h"
 #include "core/random.h"
 #include "scene/scene_data.h"
 #include "scene/texture.h"
@@ -113,7 +114,7 @@ static void make_texture(one_texture *t, uint32_t width, uint32_t height, uint8_
             t->texels[i] = value;
         }
     }
-    t->image          = (assay_texture_image){NULL, width, height, bits, t->texels};
+    t->image          = (assay_texture_image){NULL, width, height, bits, false, t->texels};
     t->scene.images   = &t->image;
     t->scene.textures = &t->texture;
     t->ref.scale[0] = t->ref.scale[1] = 1.0;
@@ -302,6 +303,34 @@ static void transforms_in_the_extensions_order(void **state)
     assert_near(out[1], -0.5, 1e-15);
 }
 
+/* Khronos's TextureTransformTest: where its green markers stand, the tip of the arrow must appear,
+ * which without a transform is at (0.7778, 0.7778).  Its red marker is the other sense of rotation.
+ */
+static void arrows_point_at_the_markers(void **state)
+{
+    static const struct {
+        double offset[2], rotation, scale, green[2], slack;
+    } rows[] = {
+        {{0.0, 0.0}, 0.39269908169872414, 1.0, {0.42095177560159874, 1.0162674857624154}, 1e-7},
+        {{0.0, 0.0}, 0.0, 1.5, {0.518544972870134853, 0.518544972870134853}, 1e-7},
+        {{-0.2, -0.1}, 0.3, 1.5, {0.43, 0.75}, 0.03}};
+    static const double tip    = 0.7778174593052023,
+                        red[2] = {1.0162674857624154, 0.42095177560159874};
+    double out[2];
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        assay_texture_ref ref = {.offset   = {rows[i].offset[0], rows[i].offset[1]},
+                                 .rotation = rows[i].rotation,
+                                 .scale    = {rows[i].scale, rows[i].scale}};
+        assay_texture_ref_prepare(&ref);
+        transform(&ref, rows[i].green, out);
+        assert_near(out[0], tip, rows[i].slack);
+        assert_near(out[1], tip, rows[i].slack);
+        transform(&ref, red, out);
+        assert_true(fabs(out[0] - tip) > 0.1);
+    }
+}
+
 static void look_ups_apply_the_transform(void **state)
 {
     static one_texture t;
@@ -325,6 +354,42 @@ static void look_ups_apply_the_transform(void **state)
     }
 }
 
+/* The order of texels in memory changes no look-up; the mutant reads tiles as if they were rows. */
+static void tiling_changes_nothing(void **state)
+{
+    static const uint32_t sizes[][2] = {{1, 1}, {2, 3}, {4, 4}, {7, 5}, {13, 9}, {1, 33}};
+    assay_context        *context    = NULL;
+    (void)state;
+    assert_int_equal(assay_context_create(NULL, &context), ASSAY_OK);
+    for (size_t s = 0; s < 2 * sizeof sizes / sizeof *sizes; s++) {
+        static one_texture plain, tiled;
+        make_texture(&plain, sizes[s / 2][0], sizes[s / 2][1], s % 2 ? 16 : 8);
+        make_texture(&tiled, sizes[s / 2][0], sizes[s / 2][1], s % 2 ? 16 : 8);
+        const size_t bytes = (size_t)plain.image.width * plain.image.height * plain.image.bits / 2;
+        tiled.image.texels = assay_allocate(context, bytes, 1);
+        memcpy(tiled.image.texels, plain.image.texels, bytes);
+        assert_int_equal(assay_texture_image_tile(context, &tiled.image), ASSAY_OK);
+        int seen = 0;
+        for (uint32_t k = 0; k < 500; k++) {
+            assay_random random = assay_random_start(8, ASSAY_STAGE_TEST, k, 0);
+            const double x      = assay_random_next(&random);
+            const double uv[2]  = {x, assay_random_next(&random)};
+            double       a[4], b[4];
+            assay_texture_sample(&plain.scene, &plain.ref, uv, true, a);
+            assay_texture_sample(&tiled.scene, &tiled.ref, uv, true, b);
+            assert_memory_equal(a, b, sizeof a);
+            tiled.image.tiled = false;
+            assay_texture_sample(&tiled.scene, &tiled.ref, uv, true, b);
+            tiled.image.tiled = true;
+            seen += memcmp(a, b, sizeof a) != 0;
+        }
+        assert_true(seen > 0 || plain.image.width * plain.image.height == 1 ||
+                    (plain.image.width == 4 && plain.image.height == 4));
+        assay_release(context, tiled.image.texels);
+    }
+    assay_context_destroy(context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(look_ups_agree_with_the_specification),
@@ -334,6 +399,8 @@ int main(void)
                                        cmocka_unit_test(any_coordinate_is_legal),
                                        cmocka_unit_test(no_transform_is_exactly_the_identity),
                                        cmocka_unit_test(transforms_in_the_extensions_order),
-                                       cmocka_unit_test(look_ups_apply_the_transform)};
+                                       cmocka_unit_test(arrows_point_at_the_markers),
+                                       cmocka_unit_test(look_ups_apply_the_transform),
+                                       cmocka_unit_test(tiling_changes_nothing)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -333,6 +333,15 @@ static void append(own_mesh *soup, const own_mesh *mesh, const affine *t)
     soup->triangle_count += mesh->triangle_count;
 }
 
+/* A skinned mesh stands where its first joint does. */
+static const cJSON *placing_node(const cJSON *json, const cJSON *node)
+{
+    const cJSON *const skin = at(json, "skins", integer(node, "skin"));
+    const cJSON *const first =
+        cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(skin, "joints"), 0);
+    return first ? at(json, "nodes", first->valueint) : node;
+}
+
 own_mesh own_gltf_flatten(const own_gltf *scene)
 {
     size_t triangles = 0;
@@ -344,7 +353,7 @@ own_mesh own_gltf_flatten(const own_gltf *scene)
     for (int i = 0; i < count_of(scene->json, "nodes"); i++) {
         const cJSON *const node = at(scene->json, "nodes", i);
         if (integer(node, "mesh") >= 0) {
-            const affine t = node_transform(node);
+            const affine t = node_transform(placing_node(scene->json, node));
             append(&soup, &scene->meshes[integer(node, "mesh")], &t);
         }
     }

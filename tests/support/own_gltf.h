@@ -37,8 +37,9 @@ void     own_gltf_release(own_gltf *scene);
 
 const own_mesh *own_gltf_mesh(const own_gltf *scene, const char *name);
 
-/* Every instance in world space, positions rounded once to float; vertices are not shared.  No
- * skins, no morph targets.  Release with own_mesh_release. */
+/* Every instance in world space, positions rounded once to float; vertices are not shared.  Skinned
+ * meshes in their bind pose (unrotated joints, the first without an inverse), morph targets at 0.
+ * Release with own_mesh_release. */
 own_mesh own_gltf_flatten(const own_gltf *scene);
 
 /* Meshes of the given names put into one (their own frames). */
