@@ -1,7 +1,6 @@
 /* closed_forms.c - scenes whose radiance is known: furnaces, a rectangle over a plane, two plates.
  *
  * The formulas are in each scene's README.md. */
-#include "core/numerics.h"
 #include "own_scenes.h"
 
 static const assay_vec3 origin = {0.0, 0.0, 0.0};

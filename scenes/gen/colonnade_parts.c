@@ -3,7 +3,7 @@
  * A part that stands on another begins a few centimetres inside it (SINK), never in its plane. */
 #include "colonnade_parts.h"
 
-#include "core/numerics.h"
+#include "turn.h"
 
 #define SINK 0.05
 #define COUNT(array) (sizeof(array) / sizeof *(array))
@@ -195,7 +195,7 @@ static assay_vec3 banner_at(const void *user, double u, double v)
 {
     const banner_shape *b    = user;
     const double        fall = 1.0 - v;
-    const assay_sincos  fold = assay_sincos_turns(b->folds * u + 0.15 * fall);
+    const turn          fold = turn_by(b->folds * u + 0.15 * fall);
     const double        hem  = 0.12 * (2.0 * u - 1.0) * (2.0 * u - 1.0);
     return vec3((0.5 - u) * b->width * (1.0 - 0.12 * fall),
                 GALLERY + 1.06 - b->length * fall + hem * fall,

@@ -3,7 +3,6 @@
  * Profiles are counter-clockwise in (u outwards from the column axes, v up), m.  Each ends inside
  * its neighbours and has no face in the plane of another part's face. */
 #include "colonnade_parts.h"
-#include "core/numerics.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 #define EDGE(u, v)                                                                                 \

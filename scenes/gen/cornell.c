@@ -3,7 +3,6 @@
  * Lists are in millimetres and in the published order, which is counter-clockwise seen from inside
  * the room (from outside for the blocks).  The published frame (x to the left, y up, z into the
  * room, as seen through the open front) is right-handed: it is kept. */
-#include "core/numerics.h"
 #include "cornell_spectra.h"
 #include "own_scenes.h"
 
@@ -115,8 +114,8 @@ static gltf_document *cornell(const char *name, const char *description, const c
     add_part(d, "left wall", &left_quad, 1, red);
     add_part(d, "short block", short_block, 5, white);
     add_part(d, "tall block", tall_block, 5, white);
-    /* Focal length 35 mm, film 25 mm square. */
-    gltf_add_perspective(d, "front", 2.0 * assay_atan(0.0125 / 0.035), vec3(0.278, 0.273, -0.8),
+    /* Focal length 35 mm, film 25 mm square: 2 atan(12.5 / 35). */
+    gltf_add_perspective(d, "front", 0.6860478808414068, vec3(0.278, 0.273, -0.8),
                          vec3(0.278, 0.273, 0.0));
     return d;
 }

@@ -1,19 +1,17 @@
 /* turned_solids.c - profiles turned about an axis, drawn round a rectangle or along an arch.
  *
  * Every solid is closed: each edge is met by its reverse, and no triangle has zero area. */
-#include <stdlib.h>
-
-#include "core/numerics.h"
 #include "solid_mesh.h"
+#include "turn.h"
 
 /* ---- revolution ---- */
 
 /* Point i of `segments` of the ring that profile point p makes. */
 static assay_vec3 ring_point(const profile_point *p, int i, int segments)
 {
-    const int          k = (i + segments) % segments;
-    const assay_sincos a = assay_sincos_turns((double)k / segments);
-    const double       r = p->u * (k % 2 ? 1.0 - p->flute : 1.0);
+    const int    k = (i + segments) % segments;
+    const turn   a = turn_by((double)k / segments);
+    const double r = p->u * (k % 2 ? 1.0 - p->flute : 1.0);
     return vec3(r * a.cos, p->v, r * a.sin);
 }
 
@@ -132,7 +130,7 @@ static arch_station archivolt_station(const arch_path *path, int s)
     if (s == path->segments + 2) {
         return (arch_station){-1.0, 0.0, -path->left_foot};
     }
-    const assay_sincos a = assay_sincos_turns(0.5 * (s - 1) / path->segments);
+    const turn a = turn_by(0.5 * (s - 1) / path->segments);
     return (arch_station){a.cos, a.sin, 0.0};
 }
 
@@ -189,12 +187,12 @@ typedef struct {
 
 static edge_point arch_point(const arcade_shape *a, int bay, int i)
 {
-    const double       centre = (bay - 0.5 * (a->bays - 1)) * a->bay;
-    const assay_sincos turn   = assay_sincos_turns(0.5 - 0.5 * i / a->segments);
+    const double centre = (bay - 0.5 * (a->bays - 1)) * a->bay;
+    const turn   angle  = turn_by(0.5 - 0.5 * i / a->segments);
     if (i == 0 || i == a->segments) {
         return (edge_point){centre + (i ? a->radius : -a->radius), a->springing};
     }
-    return (edge_point){centre + a->radius * turn.cos, a->springing + a->radius * turn.sin};
+    return (edge_point){centre + a->radius * angle.cos, a->springing + a->radius * angle.sin};
 }
 
 /* The wall over one step of its lower edge; n0, n1: normals of the soffit at both ends. */

@@ -51,7 +51,7 @@ static assay_status read_doubles(const reading *r, uint32_t accessor, const char
         }
     }
     for (uint64_t i = 0; i < count && status == ASSAY_OK; i++) {
-        assert(floats);
+        assert(floats && *values_out);
         (*values_out)[i] = floats[i];
     }
     assay_release(loader->context, floats);

@@ -147,7 +147,8 @@ static assay_status read_joints(reading *r, uint32_t set, uint32_t width)
     }
     for (uint32_t v = 0; status == ASSAY_OK && v < r->to->vertex_count; v++) {
         for (uint32_t k = 0; k < 4; k++) {
-            r->to->joints[(size_t)v * width + set * 4 + k] = (uint16_t)joints[(size_t)v * 4 + k];
+            r->to->joints[(size_t)v * width + (size_t)set * 4 + k] =
+                (uint16_t)joints[(size_t)v * 4 + k];
         }
     }
     assay_release(r->loader->context, joints);

@@ -37,7 +37,7 @@ static assay_status read_matrices(assay_gltf_loader *loader, uint32_t index,
         }
     }
     for (size_t i = 0; status == ASSAY_OK && i < (size_t)to->joint_count * 16; i++) {
-        assert(values);
+        assert(values && to->inverse_bind);
         to->inverse_bind[i] = values[i];
     }
     assay_release(loader->context, values);

@@ -10,7 +10,6 @@
 bvh_tuning bvh_tuning_default(void)
 {
     return (bvh_tuning){.box_margin     = 6.5 * 0x1p-24,
-                        .filter_margin  = 11.0 * 0x1p-24,
                         .residual_limit = 0x1p-40,
                         .leaf_size      = BVH_LEAF_SIZE,
                         .width          = BVH_WIDTH};

@@ -234,7 +234,7 @@ static assay_status run_embree(builder *b, const raw_header **root_out)
     arguments.maxBranchingFactor       = b->bvh->tuning.width;
     arguments.maxDepth                 = BVH_MAX_DEPTH - 8;
     arguments.sahBlockSize             = b->bvh->tuning.leaf_size;
-    arguments.minLeafSize              = b->bvh->tuning.leaf_size > 1 ? 2 : 1;
+    arguments.minLeafSize              = b->bvh->tuning.leaf_size;
     arguments.maxLeafSize              = b->bvh->tuning.leaf_size;
     arguments.bvh                      = b->tree;
     arguments.primitives               = b->primitives;

@@ -29,7 +29,7 @@ static inline bool encloses(edges e)
 {
     const double uv_low = e.u < e.v ? e.u : e.v, uv_high = e.u > e.v ? e.u : e.v;
     const double low = uv_low < e.w ? uv_low : e.w, high = uv_high > e.w ? uv_high : e.w;
-    return !((low < 0.0) & (high > 0.0));
+    return (low >= 0.0) | (high <= 0.0);
 }
 
 /* Whether the point that the edge functions stand for is on the ray; false for det = 0 and NaN. */
@@ -82,10 +82,6 @@ bool bvh_query_try(bvh_query *query, const float *corner, size_t corner_stride, 
     if (!bvh_query_in_order(query, t, triangle)) {
         return false;
     }
-    query->best_t        = t;
-    query->best_triangle = triangle;
-    query->v             = e.v;
-    query->w             = e.w;
-    query->det           = det;
+    bvh_query_take(query, t, triangle, e.v, e.w, det);
     return true;
 }

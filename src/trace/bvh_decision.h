@@ -79,18 +79,29 @@ static inline void bvh_query_start(bvh_query *q, const assay_bvh *bvh, const ass
     q->shear.abs_dz     = fabs(d[kz]);
     q->shear.magnitude  = bvh->extent + (oxy > oz ? oxy : oz);
     q->shear.residual   = bvh->tuning.residual_limit * q->shear.magnitude;
-    q->t_after          = ray->t_after;
+    q->t_after          = bvh_load_alone(&ray->t_after);
     q->triangle_after   = ray->triangle_after;
     q->best_triangle    = 0;
-    q->best_t           = ray->t_max;
+    q->best_t           = bvh_load_alone(&ray->t_max);
     q->v = q->w = q->det = 0.0;
 }
 
-/* Whether a hit lies after the ray's start and before the best so far, in the order (t, triangle). */
+/* Whether a hit lies after the ray's start and before the best so far, in the order (t, triangle).
+ */
 static inline bool bvh_query_in_order(const bvh_query *q, double t, uint32_t triangle)
 {
     return (t > q->t_after || (t == q->t_after && triangle > q->triangle_after)) &&
            (t < q->best_t || (t == q->best_t && triangle < q->best_triangle));
+}
+
+static inline void bvh_query_take(bvh_query *q, double t, uint32_t triangle, double v, double w,
+                                  double det)
+{
+    q->best_t        = t;
+    q->best_triangle = triangle;
+    q->v             = v;
+    q->w             = w;
+    q->det           = det;
 }
 
 /* Lets a triangle compete for the first hit; true when it became the best so far.

@@ -37,14 +37,14 @@ typedef struct {
 _Static_assert(sizeof(bvh_node) % BVH_UNIT == 0, "a node is a whole number of units");
 _Static_assert(sizeof(bvh_leaf) % BVH_UNIT == 0, "a leaf is a whole number of units");
 
-/* Safety margins, derived in docs/exact-hits.md, and the shape of the tree.  Only tests that must
- * see a wrong margin fail, or another tree give the same answers, change them. */
+/* Safety margins, derived in docs/exact-hits.md, and the shape of the tree.  Only tests change
+ * them: to see a wrong margin fail, or another tree give the same answers. */
 typedef struct {
-    double   box_margin;     /* of the boxes' distances, in units of M |1/d|           */
-    double   filter_margin;  /* of the float filter's sheared coordinates, in units of M */
-    double   residual_limit; /* of the plain decision before it is refined, in units of M */
-    uint32_t leaf_size;      /* 1 .. BVH_LEAF_SIZE                                     */
-    uint32_t width;          /* 2 .. BVH_WIDTH                                         */
+    double box_margin;     /* of the distances to boxes, in units of M |1/d|               */
+    double residual_limit; /* of a decision in plain arithmetic, in units of M, else it is
+                              refined                                                      */
+    uint32_t leaf_size;    /* 1 .. BVH_LEAF_SIZE                                           */
+    uint32_t width;        /* 2 .. BVH_WIDTH                                               */
 } bvh_tuning;
 
 bvh_tuning bvh_tuning_default(void);
