@@ -362,6 +362,18 @@ bool refuse_image(tinygltf::Image *, const int, std::string *, std::string *, in
     return false;
 }
 
+// tinygltf's JSON tree asks for memory even to release itself, and ends the process where there is
+// none.  So it is only started where what it may take at most is there to be had.
+void require_room(size_t text_bytes)
+{
+    enum { BYTES_A_CHARACTER = 32, LEAST = 1 << 16 };
+    void *room = ::operator new(LEAST + text_bytes * BYTES_A_CHARACTER, std::nothrow);
+    if (!room) {
+        throw std::bad_alloc();
+    }
+    ::operator delete(room);
+}
+
 assay_status parse(assay_context *context, const char *file, const char *text, size_t count,
                    assay_gltf_document *out)
 {
@@ -375,8 +387,12 @@ assay_status parse(assay_context *context, const char *file, const char *text, s
     callbacks.WriteWholeFile        = refuse_write;
     reader.SetFsCallbacks(callbacks);
     reader.SetImageLoader(refuse_image, nullptr);
+    require_room(count);
     if (!reader.LoadASCIIFromString(&model, &error, &warning, text,
                                     static_cast<unsigned int>(count), "")) {
+        if (error.find("bad_alloc") != std::string::npos) {
+            throw std::bad_alloc(); // swallowed by its parser
+        }
         const std::string line = error.substr(0, error.find('\n'));
         return assay_fail(context, ASSAY_ERR_FORMAT, "%s: %s", file, line.c_str());
     }
