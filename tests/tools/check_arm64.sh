@@ -38,6 +38,10 @@ if [ ! -e "$base/unpacked" ]; then
     find "$root" -type l -lname '/*' | while read -r link; do
         ln -sfn "$root$(readlink "$link")" "$link"
     done
+    # libc is the cross compiler's own: what would be linked from here is taken away.
+    for name in c m pthread dl rt util; do
+        rm -f "$root/usr/lib/aarch64-linux-gnu/lib$name.so" "$root/usr/lib/aarch64-linux-gnu/lib$name.a"
+    done
     touch "$base/unpacked"
 fi
 
