@@ -64,10 +64,10 @@ $(BUILD)/libassay.a: $(LIB_O)
 	$(AR) rcs $@ $^
 
 $(BUILD)/libassay.so: $(LIB_O)
-	$(CC) -shared -Wl,-soname,libassay.so.$(SOVERSION) $(LDFLAGS) $^ $(LDLIBS) -o $@
+	$(CXX) -shared -Wl,-soname,libassay.so.$(SOVERSION) $(LDFLAGS) $^ $(LDLIBS) -o $@
 
 $(BUILD)/assay: $(CLI_O) $(BUILD)/libassay.a
-	$(CC) $(LDFLAGS) $^ $(LDLIBS) -o $@
+	$(CXX) $(LDFLAGS) $^ $(LDLIBS) -o $@
 
 # ---- what must be installed: asked for only where it is missing ----
 define install_missing
@@ -105,16 +105,19 @@ demo: deps ## build, render our Cornell box, write EXR and PNG
 test: deps-test ## build and run all tests
 	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(TESTS) $(BUILD)/make_scenes
 	@ASSAY_BIN=$(BUILD)/assay BUILD=$(BUILD) MUTANT_COMPILE="$(CC) $(filter-out -DASSAY_VERSION%,$(CPPFLAGS)) $(CFLAGS)" \
-	   MUTANT_LINK="$(CC) $(LDFLAGS)" \
+	   MUTANT_LINK="$(CXX) $(LDFLAGS)" \
 	   MUTANT_LIBS="$(HELP_O) $(filter-out %/main.o,$(GEN_O)) $(BUILD)/libassay.a -lcmocka $(LDLIBS)" \
 	   tests/tools/run.sh $(wildcard tests/*/test_*.sh) $(TESTS)
 
 # ---- tests ----
 $(BUILD)/tests/bench/%: $(BUILD)/tests/bench/%.o $(BUILD)/libassay.a
-	$(CC) $(LDFLAGS) $^ $(LDLIBS) -o $@
+	$(CXX) $(LDFLAGS) $^ $(LDLIBS) -o $@
+
+$(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/libassay.a
+	$(CXX) $(LDFLAGS) $(FUZZ_LINK) $^ $(LDLIBS) -o $@
 
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(HELP_O) $(filter-out %/main.o,$(GEN_O)) $(BUILD)/libassay.a
-	$(CC) $(LDFLAGS) $^ -lcmocka $(LDLIBS) -o $@
+	$(CXX) $(LDFLAGS) $^ -lcmocka $(LDLIBS) -o $@
 
 check-sanitize: deps-test ## the tests under ASan and UBSan
 	@$(MAKE) --no-print-directory test BUILD=build/sanitize CC=clang CXX=clang++ OPT="-O1 -g" \
@@ -132,7 +135,7 @@ fuzz: ## fuzz the loaders for an hour (clang)
 
 # ---- scenes ----
 $(BUILD)/make_scenes: $(GEN_O) $(BUILD)/libassay.a
-	$(CC) $(LDFLAGS) $^ $(LDLIBS) -o $@
+	$(CXX) $(LDFLAGS) $^ $(LDLIBS) -o $@
 
 scenes: $(BUILD)/make_scenes ## write our own scenes again
 	$(BUILD)/make_scenes scenes

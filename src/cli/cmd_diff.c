@@ -6,6 +6,7 @@
 
 #include "console.h"
 #include "options.h"
+#include "output_check.h"
 
 typedef struct {
     const char *paths[2];
@@ -121,6 +122,9 @@ static assay_status compare(assay_context *context, const diff_request *request,
     if (status == ASSAY_OK) {
         status = assay_image_read(context, request->paths[1], &images[1]);
     }
+    if (status == ASSAY_OK && cli_console_stopped()) {
+        status = ASSAY_ERR_CANCELLED;
+    }
     if (status == ASSAY_OK) {
         status = assay_image_compare(images[0], images[1], &comparison);
     }
@@ -141,6 +145,14 @@ static assay_status compare(assay_context *context, const diff_request *request,
     return status;
 }
 
+static int check_heat_map(const diff_request *r)
+{
+    int code = cli_check_extension("diff", "--heat-map", r->heat_map, ".png");
+    code     = code ? code : cli_check_not_input("diff", r->heat_map, r->paths[0]);
+    code     = code ? code : cli_check_not_input("diff", r->heat_map, r->paths[1]);
+    return code ? code : cli_check_file("diff", r->heat_map);
+}
+
 int cli_diff(int count, char **argv)
 {
     diff_request request = {.scale = 0.1};
@@ -148,12 +160,19 @@ int cli_diff(int count, char **argv)
     if (!cli_parse("diff", count, argv, OPTIONS, take, NULL, &request)) {
         return CLI_EXIT_USAGE;
     }
-    if (request.help || request.path_count != 2) {
-        fprintf(request.help ? stdout : stderr,
-                "usage: assay diff A.exr B.exr [--heat-map F.png] [--json]\n"
-                "A is the reference. Exit code 0: every bit the same; 1: they differ.\n");
+    if (request.help) {
+        printf("usage: assay diff A.exr B.exr [--heat-map F.png] [--json]\n"
+               "A is the reference. Exit code 0: every bit the same; 1: they differ.\n");
         cli_print_options(OPTIONS);
-        return request.help ? 0 : CLI_EXIT_USAGE;
+        return 0;
+    }
+    if (request.path_count != 2) {
+        cli_complain("diff", "two images are compared (assay diff --help lists the options)");
+        return CLI_EXIT_USAGE;
+    }
+    const int check = request.heat_map ? check_heat_map(&request) : 0;
+    if (check != 0) {
+        return check;
     }
     assay_context *context = cli_console_open(&console, "diff", false, 0);
     if (!context) {

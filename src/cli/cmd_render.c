@@ -5,6 +5,7 @@
 #include <time.h>
 
 #include "console.h"
+#include "output_check.h"
 #include "render_request.h"
 
 typedef struct {
@@ -74,7 +75,7 @@ static bool add_params(cJSON *root, const render_job *job)
     return ok;
 }
 
-static assay_status write_stats(const render_job *job, const char *path)
+static assay_status write_stats(render_job *job, const char *path)
 {
     const assay_render_stats *s    = &job->stats;
     cJSON                    *root = cJSON_CreateObject();
@@ -88,8 +89,9 @@ static assay_status write_stats(const render_job *job, const char *path)
         cJSON_AddNumberToObject(root, "relative_error", s->relative_error) &&
         add_seconds(root, job) && add_memory(root, s) &&
         cJSON_AddNumberToObject(root, "threads", s->threads);
-    char        *text   = ok ? cJSON_Print(root) : NULL;
-    assay_status status = text ? cli_write_text(job->context, path, text) : ASSAY_ERR_MEMORY;
+    char        *text = ok ? cJSON_Print(root) : NULL;
+    assay_status status =
+        text ? cli_write_text(job->console, job->context, path, text) : ASSAY_ERR_MEMORY;
     cJSON_free(text);
     cJSON_Delete(root);
     return status;
@@ -165,13 +167,20 @@ static bool name_file(const cli_render_request *request, const char *pattern, lo
     return !pattern || cli_frame_name(request, pattern, frame, out, PATH_SIZE);
 }
 
+static bool name_files(const cli_render_request *r, long frame, frame_files *files)
+{
+    return name_file(r, r->output, frame, files->output) &&
+           name_file(r, r->png, frame, files->png) && name_file(r, r->stats, frame, files->stats) &&
+           name_file(r, r->dump, frame, files->dump);
+}
+
 static assay_status render_frame(render_job *job, long frame)
 {
     const cli_render_request *r = job->request;
     frame_files               files;
-    if (!name_file(r, r->output, frame, files.output) || !name_file(r, r->png, frame, files.png) ||
-        !name_file(r, r->stats, frame, files.stats) || !name_file(r, r->dump, frame, files.dump)) {
-        fprintf(stderr, "assay render: a name of a frame is too long\n");
+    if (!name_files(r, frame, &files)) {
+        job->console->said = true;
+        cli_complain("render", "frame %ld: the name of an output is too long", frame);
         return ASSAY_ERR_ARGUMENT;
     }
     const double time   = r->has_frames ? (double)frame / r->fps : r->time;
@@ -203,10 +212,31 @@ static assay_status render_all(render_job *job)
     return status;
 }
 
-static bool outputs_are_possible(const cli_console *console, const cli_render_request *r)
+/* Asked of the first frame: what holds for it mostly holds for all. */
+static int check_outputs(const cli_render_request *r)
 {
-    return cli_can_write(console, r->output) && (!r->png || cli_can_write(console, r->png)) &&
-           (!r->stats || strcmp(r->stats, "-") == 0 || cli_can_write(console, r->stats));
+    frame_files files;
+    int         code = 0;
+    if (!name_files(r, r->first_frame, &files)) {
+        cli_complain("render", "the name of an output is too long");
+        return CLI_EXIT_USAGE;
+    }
+    const struct {
+        const char *option, *path, *extension;
+    } outputs[] = {{"--output", files.output, r->points ? ".npy" : ".exr"},
+                   {"--png", files.png, ".png"},
+                   {"--stats", files.stats, ".json"}};
+    for (int i = 0; i < 3 && code == 0; i++) {
+        const char *path = outputs[i].path;
+        if ((i > 0 && !*path) || strcmp(path, "-") == 0) {
+            continue;
+        }
+        code = cli_check_extension("render", outputs[i].option, path, outputs[i].extension);
+        code = code ? code : cli_check_not_input("render", path, r->scene);
+        code = code || !r->points ? code : cli_check_not_input("render", path, r->points);
+        code = code ? code : cli_check_file("render", path);
+    }
+    return code || !r->dump ? code : cli_check_new_folder("render", files.dump);
 }
 
 int cli_render(int count, char **argv)
@@ -217,21 +247,22 @@ int cli_render(int count, char **argv)
         return CLI_EXIT_USAGE;
     }
     if (request.help) {
-        cli_render_request_help();
+        cli_render_request_help(&request);
         return 0;
+    }
+    int code = check_outputs(&request);
+    if (code != 0) {
+        return code;
     }
     assay_context *context =
         cli_console_open(&console, "render", request.quiet, (int)request.threads);
     if (!context) {
         return assay_status_exit_code(ASSAY_ERR_MEMORY);
     }
-    int code = assay_status_exit_code(ASSAY_ERR_WRITE);
-    if (outputs_are_possible(&console, &request)) {
-        render_job job = {.request = &request, .console = &console, .context = context};
-        code           = cli_console_finish(&console, context, render_all(&job));
-        assay_params_destroy(job.params);
-        assay_scene_destroy(job.scene);
-    }
+    render_job job = {.request = &request, .console = &console, .context = context};
+    code           = cli_console_finish(&console, context, render_all(&job));
+    assay_params_destroy(job.params);
+    assay_scene_destroy(job.scene);
     assay_context_destroy(context);
     return code;
 }

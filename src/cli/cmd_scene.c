@@ -82,10 +82,14 @@ int cli_scene(int count, char **argv)
     if (!cli_parse("scene", count, argv, OPTIONS, take, NULL, &request)) {
         return CLI_EXIT_USAGE;
     }
-    if (request.help || !request.path) {
-        fprintf(request.help ? stdout : stderr, "usage: assay scene SCENE.gltf [--json] ...\n");
+    if (request.help) {
+        printf("usage: assay scene SCENE.gltf [--json] ...\n");
         cli_print_options(OPTIONS);
-        return request.help ? 0 : CLI_EXIT_USAGE;
+        return 0;
+    }
+    if (!request.path) {
+        cli_complain("scene", "no scene given (assay scene --help lists the options)");
+        return CLI_EXIT_USAGE;
     }
     /* Warnings are part of the report; they are not said twice. */
     assay_context *context = cli_console_open(&console, "scene", true, 0);

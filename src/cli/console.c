@@ -1,24 +1,56 @@
-/* console.c - progress, warnings, errors and Ctrl-C. */
+/* console.c - progress, warnings, errors and Ctrl-C.
+ *
+ * Ctrl-C asks the library to stop, and the library removes what it had begun to write.  Only from
+ * two seconds later on a second one ends the process at once: a signal often comes twice, as from
+ * timeout(1), which sends it to the process and to its group. */
 #include "console.h"
 
 #include <errno.h>
-#include <libgen.h>
 #include <signal.h>
+#include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 /* A signal handler can reach nothing but a global. */
 static volatile sig_atomic_t interrupted;
 
-/* The first Ctrl-C asks the library to stop; the second one ends the process. */
-static void handle_interrupt(int number)
+enum { GRACE_SECONDS = 2 };
+static const int STOP_SIGNALS[] = {SIGINT, SIGTERM, SIGHUP};
+enum { STOP_SIGNAL_COUNT = sizeof STOP_SIGNALS / sizeof STOP_SIGNALS[0] };
+
+static void end_grace(int number)
 {
-    interrupted = 1;
-    signal(number, SIG_DFL);
+    (void)number;
+    for (int i = 0; i < STOP_SIGNAL_COUNT; i++) {
+        signal(STOP_SIGNALS[i], SIG_DFL);
+    }
 }
+
+static void handle_stop(int number)
+{
+    (void)number;
+    if (!interrupted) {
+        interrupted = 1;
+        alarm(GRACE_SECONDS);
+    }
+}
+
+static void listen_to_signals(void)
+{
+    for (int i = 0; i < STOP_SIGNAL_COUNT; i++) {
+        /* nohup(1) says so by ignoring SIGHUP. */
+        if (signal(STOP_SIGNALS[i], handle_stop) == SIG_IGN && STOP_SIGNALS[i] == SIGHUP) {
+            signal(SIGHUP, SIG_IGN);
+        }
+    }
+    signal(SIGALRM, end_grace);
+    /* Writing then fails with an error that is told, and what was begun is removed. */
+    signal(SIGXFSZ, SIG_IGN);
+    signal(SIGPIPE, SIG_IGN);
+}
+
+bool cli_console_stopped(void) { return interrupted != 0; }
 
 void cli_console_clear(cli_console *console)
 {
@@ -28,13 +60,25 @@ void cli_console_clear(cli_console *console)
     }
 }
 
+/* File names may hold anything; a message stays one line. */
+static void print_line(const char *command, const char *kind, const char *text)
+{
+    char line[2048];
+    snprintf(line, sizeof line, "%s", text);
+    for (char *c = line; *c; c++) {
+        if ((unsigned char)*c < ' ' || *c == 127) {
+            *c = '?';
+        }
+    }
+    fprintf(stderr, "assay %s: %s%s\n", command, kind, line);
+}
+
 static void print_log(void *user, assay_log_level level, const char *line)
 {
     cli_console *console = user;
     if (!console->quiet) {
         cli_console_clear(console);
-        fprintf(stderr, "assay %s: %s%s\n", console->command,
-                level == ASSAY_LOG_WARNING ? "warning: " : "", line);
+        print_line(console->command, level == ASSAY_LOG_WARNING ? "warning: " : "", line);
     }
 }
 
@@ -59,6 +103,17 @@ static bool show_progress(void *user, const char *phase, double fraction)
     return !interrupted;
 }
 
+bool cli_complain(const char *command, const char *format, ...)
+{
+    char    text[2048];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    print_line(command, "", text);
+    return false;
+}
+
 assay_context *cli_console_open(cli_console *console, const char *command, bool quiet, int threads)
 {
     *console = (cli_console){
@@ -68,52 +123,33 @@ assay_context *cli_console_open(cli_console *console, const char *command, bool 
     assay_context     *context = NULL;
     const assay_status status  = assay_context_create(&options, &context);
     if (status != ASSAY_OK) {
-        fprintf(stderr, "assay %s: %s\n", command, assay_status_text(status));
+        cli_complain(command, "%s", assay_status_text(status));
         return NULL;
     }
-    signal(SIGINT, handle_interrupt);
-    signal(SIGTERM, handle_interrupt);
+    listen_to_signals();
     return context;
 }
 
 int cli_console_finish(cli_console *console, const assay_context *context, assay_status status)
 {
     cli_console_clear(console);
-    /* What the command itself found wrong is said already. */
-    if (status != ASSAY_OK && *assay_context_error(context)) {
-        fprintf(stderr, "assay %s: %s\n", console->command, assay_context_error(context));
+    if (status != ASSAY_OK && !console->said) {
+        const char *reason = assay_context_error(context);
+        cli_complain(console->command, "%s", *reason ? reason : assay_status_text(status));
     }
     return assay_status_exit_code(status);
 }
 
-bool cli_can_write(const cli_console *console, const char *path)
-{
-    struct stat info;
-    if (stat(path, &info) == 0 && S_ISDIR(info.st_mode)) {
-        fprintf(stderr, "assay %s: %s: is a folder; give the name of a file\n", console->command,
-                path);
-        return false;
-    }
-    char *copy = strdup(path);
-    if (!copy) {
-        return false;
-    }
-    const char *folder = dirname(copy);
-    const bool  writable =
-        access(folder, W_OK) == 0 ||
-        (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && access(path, W_OK) == 0);
-    if (!writable) {
-        fprintf(stderr, "assay %s: %s: cannot write in folder '%s': %s\n", console->command, path,
-                folder, strerror(errno));
-    }
-    free(copy);
-    return writable;
-}
-
-assay_status cli_write_text(assay_context *context, const char *path, const char *text)
+assay_status cli_write_text(cli_console *console, assay_context *context, const char *path,
+                            const char *text)
 {
     if (strcmp(path, "-") != 0) {
         return assay_text_write(context, path, text);
     }
-    return puts(text) < 0 || fflush(stdout) ? ASSAY_ERR_WRITE : ASSAY_OK;
+    if (puts(text) >= 0 && fflush(stdout) == 0) {
+        return ASSAY_OK;
+    }
+    console->said = true;
+    cli_complain(console->command, "standard output: %s", strerror(errno));
+    return ASSAY_ERR_WRITE;
 }

@@ -10,7 +10,8 @@ enum { CLI_EXIT_DIFFERENT = 1, CLI_EXIT_USAGE = 2 };
 typedef struct {
     const char *command;  /* "render", for messages                             */
     bool        quiet;    /* no warnings, no progress                           */
-    bool        terminal; /* stderr is one: progress bars are drawn            */
+    bool        terminal; /* stderr is one: progress bars are drawn             */
+    bool        said;     /* what is wrong is printed already                   */
     bool        bar_drawn;
     int         last_percent;
     char        last_phase[16];
@@ -20,18 +21,23 @@ typedef struct {
  * stops at Ctrl-C.  The console must outlive it.  NULL after a message. */
 assay_context *cli_console_open(cli_console *console, const char *command, bool quiet, int threads);
 
+/* Whether Ctrl-C was pressed: asked between steps that show no progress. */
+bool cli_console_stopped(void);
+
 /* Takes the progress bar off the screen, so that something can be printed. */
 void cli_console_clear(cli_console *console);
 
-/* Prints why a call failed, and gives the exit code; 0 for ASSAY_OK, silently. */
+/* Prints `assay COMMAND: ...` as one line on stderr, whatever the arguments hold.  Always false. */
+bool cli_complain(const char *command, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* Prints why a call failed, unless the command said so itself, and gives the exit code; 0 for
+ * ASSAY_OK, silently. */
 int cli_console_finish(cli_console *console, const assay_context *context, assay_status status);
 
-/* Whether a file of this name could be written (its folder is there and writable, it is not a
- * folder itself): asked before hours are spent.  Prints what is wrong and answers false. */
-bool cli_can_write(const cli_console *console, const char *path);
-
 /* Writes a text to a file, or to stdout for "-". */
-assay_status cli_write_text(assay_context *context, const char *path, const char *text);
+assay_status cli_write_text(cli_console *console, assay_context *context, const char *path,
+                            const char *text);
 
 /* The commands: arguments behind the command's name; they return the exit code. */
 int cli_render(int count, char **argv);

@@ -1,4 +1,5 @@
 /* main.c - which command was asked for. */
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -30,7 +31,7 @@ static void print_usage(FILE *out)
                  "memory or cannot write; 4 internal error; 130 interrupted\n");
 }
 
-int main(int argc, char **argv)
+static int run_command(int argc, char **argv)
 {
     if (argc < 2) {
         print_usage(stderr);
@@ -50,6 +51,19 @@ int main(int argc, char **argv)
             return COMMANDS[i].run(argc - 2, argv + 2);
         }
     }
-    fprintf(stderr, "assay: unknown command '%s' (assay --help lists them)\n", name);
+    cli_complain(name, "unknown command; there are render, scene, methods, diff");
     return CLI_EXIT_USAGE;
+}
+
+int main(int argc, char **argv)
+{
+    const int code = run_command(argc, argv);
+    /* A report that nobody got is no success; a full disk may show only now. */
+    errno             = 0;
+    const bool failed = ferror(stdout) != 0 || fflush(stdout) != 0;
+    if (failed && (code == 0 || code == CLI_EXIT_DIFFERENT)) {
+        cli_complain(argv[1], "standard output: %s", errno ? strerror(errno) : "cannot be written");
+        return assay_status_exit_code(ASSAY_ERR_WRITE);
+    }
+    return code;
 }

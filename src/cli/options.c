@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "console.h"
+
 static int find_name(const cli_option *table, const char *name, size_t length)
 {
     for (int i = 0; table[i].name; i++) {
@@ -27,13 +29,6 @@ static int find_letter(const cli_option *table, char letter)
     return -1;
 }
 
-static bool complain(const char *command, const char *option, const char *problem)
-{
-    fprintf(stderr, "assay %s: %s: %s (assay %s --help lists the options)\n", command, option,
-            problem, command);
-    return false;
-}
-
 typedef struct {
     const char         *command;
     int                 count, at;
@@ -44,31 +39,44 @@ typedef struct {
     void               *user;
 } parser;
 
-/* The value of an option: behind '=', or the next word. */
+/* True where there is no problem. */
+static bool accept(const parser *p, const char *option, const char *value, const char *problem)
+{
+    if (!problem) {
+        return true;
+    }
+    const int length = (int)strcspn(option, "=");
+    return value ? cli_complain(p->command, "%.*s '%s': %s (assay %s --help lists the options)",
+                                length, option, value, problem, p->command)
+                 : cli_complain(p->command, "%.*s: %s (assay %s --help lists the options)", length,
+                                option, problem, p->command);
+}
+
+/* The value of an option: behind '=', or the next word, unless that is an option itself. */
 static const char *take_value(parser *p, const char *behind)
 {
     if (behind) {
         return behind;
     }
-    return p->at + 1 < p->count ? p->argv[++p->at] : NULL;
+    const char *next = p->at + 1 < p->count ? p->argv[p->at + 1] : NULL;
+    if (!next || strncmp(next, "--", 2) == 0) {
+        return NULL;
+    }
+    p->at++;
+    return next;
 }
 
 static bool parse_unknown(parser *p, const char *word, const char *name, size_t length,
                           const char *behind)
 {
-    char        copy[64];
-    const char *value;
+    char copy[64];
     if (!p->unknown || length >= sizeof copy) {
-        return complain(p->command, word, "unknown option");
+        return accept(p, word, NULL, "unknown option");
     }
     memcpy(copy, name, length);
-    copy[length] = '\0';
-    value        = take_value(p, behind);
-    if (!value) {
-        return complain(p->command, word, "unknown option, or its value is missing");
-    }
-    const char *problem = p->unknown(p->user, copy, value);
-    return problem ? complain(p->command, word, problem) : true;
+    copy[length]      = '\0';
+    const char *value = take_value(p, behind);
+    return accept(p, word, NULL, p->unknown(p->user, copy, value));
 }
 
 static bool parse_option(parser *p, const char *word)
@@ -87,20 +95,19 @@ static bool parse_option(parser *p, const char *word)
         index  = find_letter(p->table, word[1]);
         behind = word[2] ? word + 2 : NULL;
         if (index < 0) {
-            return complain(p->command, word, "unknown option");
+            return accept(p, word, NULL, "unknown option");
         }
     }
     const char *value = NULL;
     if (p->table[index].argument) {
         value = take_value(p, behind);
         if (!value) {
-            return complain(p->command, word, "a value is missing");
+            return accept(p, word, NULL, "a value is missing");
         }
     } else if (behind) {
-        return complain(p->command, word, "this option takes no value");
+        return accept(p, word, NULL, "this option takes no value");
     }
-    const char *problem = p->handler(p->user, index, value);
-    return problem ? complain(p->command, word, problem) : true;
+    return accept(p, word, value, p->handler(p->user, index, value));
 }
 
 bool cli_parse(const char *command, int count, char **argv, const cli_option *table,
@@ -117,9 +124,8 @@ bool cli_parse(const char *command, int count, char **argv, const cli_option *ta
                 return false;
             }
         } else {
-            const char *problem = handler(user, -1, word);
-            if (problem) {
-                return complain(command, word, problem);
+            if (!accept(&p, word, NULL, handler(user, -1, word))) {
+                return false;
             }
         }
     }
@@ -143,7 +149,7 @@ const char *cli_read_real(const char *text, double *value)
 {
     char        *end    = NULL;
     const double number = strtod(text, &end);
-    if (end == text || *end || !isfinite(number) || strpbrk(text, "xXnN \t")) {
+    if (!*text || *end || !isfinite(number) || strspn(text, "+-.0123456789eE") != strlen(text)) {
         return "takes a number";
     }
     *value = number;
@@ -155,9 +161,9 @@ const char *cli_read_count(const char *text, long minimum, long maximum, long *v
     char *end         = NULL;
     errno             = 0;
     const long number = strtol(text, &end, 10);
-    if (end == text || *end || errno || number < minimum || number > maximum ||
-        strpbrk(text, " \t+")) {
-        return "takes a whole number in its range";
+    if (!*text || *end || errno || number < minimum || number > maximum ||
+        strspn(text, "-0123456789") != strlen(text)) {
+        return "takes a whole number";
     }
     *value = number;
     return NULL;
@@ -175,39 +181,42 @@ const char *cli_read_seed(const char *text, unsigned long long *value)
     return NULL;
 }
 
+/* The words of a text between separators, copied; false unless there are just `count`. */
+static bool split(const char *text, char separator, int count, char words[][64])
+{
+    for (int i = 0; i < count; i++) {
+        const char  *end    = i + 1 < count ? strchr(text, separator) : text + strlen(text);
+        const size_t length = end ? (size_t)(end - text) : 0;
+        if (!end || length >= 64) {
+            return false;
+        }
+        memcpy(words[i], text, length);
+        words[i][length] = '\0';
+        text             = *end ? end + 1 : end;
+    }
+    return true;
+}
+
 const char *cli_read_size(const char *text, int *width, int *height)
 {
-    int w = 0, h = 0, used = 0;
-    if (sscanf(text, "%5dx%5d%n", &w, &h, &used) != 2 || text[used] || w < 1 || h < 1 ||
-        w > 65536 || h > 65536) {
+    char words[2][64];
+    long w, h;
+    if (!split(text, 'x', 2, words) || cli_read_count(words[0], 1, ASSAY_IMAGE_MAX_SIDE, &w) ||
+        cli_read_count(words[1], 1, ASSAY_IMAGE_MAX_SIDE, &h)) {
         return "takes WxH, each from 1 to 65536, as in 640x480";
     }
-    *width  = w;
-    *height = h;
+    *width  = (int)w;
+    *height = (int)h;
     return NULL;
 }
 
 const char *cli_read_triple(const char *text, double value[3])
 {
-    char   copy[128];
+    char   words[3][64];
     double read[3];
-    if (strlen(text) >= sizeof copy) {
-        return "takes R,G,B";
-    }
-    strcpy(copy, text);
-    char *at = copy;
-    for (int i = 0; i < 3; i++) {
-        char *comma = strchr(at, ',');
-        if ((i < 2) != (comma != NULL)) {
-            return "takes three numbers, as in 1,0.5,0";
-        }
-        if (comma) {
-            *comma = '\0';
-        }
-        if (cli_read_real(at, &read[i])) {
-            return "takes three numbers, as in 1,0.5,0";
-        }
-        at = comma ? comma + 1 : at;
+    if (!split(text, ',', 3, words) || cli_read_real(words[0], &read[0]) ||
+        cli_read_real(words[1], &read[1]) || cli_read_real(words[2], &read[2])) {
+        return "takes three numbers, as in 1,0.5,0";
     }
     memcpy(value, read, sizeof read);
     return NULL;
@@ -215,22 +224,13 @@ const char *cli_read_triple(const char *text, double value[3])
 
 const char *cli_read_range(const char *text, long *first, long *last)
 {
-    char        copy[64];
-    const char *colon = strchr(text, ':');
-    long        a, b;
-    if (strlen(text) >= sizeof copy) {
-        return "takes A:B";
-    }
-    strcpy(copy, text);
-    if (colon) {
-        copy[colon - text] = '\0';
-    }
-    if (cli_read_count(copy, -1000000, 1000000, &a) ||
-        (colon && cli_read_count(colon + 1, -1000000, 1000000, &b))) {
+    enum { MOST = 1000000 };
+    char       words[2][64];
+    const bool pair = strchr(text, ':') != NULL;
+    long       a, b;
+    if (!split(text, ':', pair ? 2 : 1, words) || cli_read_count(words[0], -MOST, MOST, &a) ||
+        cli_read_count(words[pair], -MOST, MOST, &b)) {
         return "takes frames A:B, whole numbers from -1000000 to 1000000";
-    }
-    if (!colon) {
-        b = a;
     }
     if (b < a) {
         return "takes frames A:B with B not before A";

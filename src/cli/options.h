@@ -16,7 +16,8 @@ typedef struct {
  * switch), or index -1 for an operand.  Answers NULL, or what is wrong with it. */
 typedef const char *(*cli_option_handler)(void *user, int index, const char *value);
 
-/* Called for a long option that is not in the table; answers as above.  May be NULL. */
+/* Called for a long option that is not in the table; answers as above.  value is NULL where there
+ * is none.  The handler may be NULL. */
 typedef const char *(*cli_unknown_handler)(void *user, const char *name, const char *value);
 
 /* Goes through argv[0..count).  False after printing `command: what is wrong` to stderr. */
@@ -32,6 +33,7 @@ const char *cli_read_real(const char *text, double *value);             /* finit
 const char *cli_read_triple(const char *text, double value[3]);         /* "1,0.5,0"    */
 const char *cli_read_range(const char *text, long *first, long *last);  /* "0:23", "7"  */
 const char *cli_read_seed(const char *text, unsigned long long *value); /* 0 ... 2^64-1 */
+/* A whole number in the range; the caller knows better words for it. */
 const char *cli_read_count(const char *text, long minimum, long maximum, long *value);
 
 #endif

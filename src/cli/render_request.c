@@ -4,10 +4,13 @@
  * checked once the method is known, by the library. */
 #include "render_request.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "console.h"
 #include "options.h"
+#include "output_check.h"
 #include "scene_options.h"
 
 enum {
@@ -81,9 +84,30 @@ static const char *take_param(cli_render_request *request, const char *value)
                   : "takes NAME=VALUE";
 }
 
+static bool is_param(const assay_method_info *method, const char *name)
+{
+    for (const assay_param_desc *p = method->params; p->name; p++) {
+        size_t i = 0;
+        while (p->name[i] && p->name[i] == (name[i] == '-' ? '_' : name[i])) {
+            i++;
+        }
+        if (!p->name[i] && !name[i]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Which method it will be is not known yet: a parameter of any of them will do. */
 static const char *take_unknown(void *user, const char *name, const char *value)
 {
-    return add_param(user, name, strlen(name), value);
+    for (int i = 0; i < assay_method_count(); i++) {
+        const assay_method_info method = assay_method_at(i);
+        if (is_param(&method, name)) {
+            return value ? add_param(user, name, strlen(name), value) : "a value is missing";
+        }
+    }
+    return "unknown option";
 }
 
 static const char *take_number(cli_render_request *request, int index, const char *value)
@@ -91,7 +115,10 @@ static const char *take_number(cli_render_request *request, int index, const cha
     const char        *problem = NULL;
     unsigned long long seed    = 0;
     switch (index) {
-    case OPT_EXPOSURE: return cli_read_real(value, &request->exposure);
+    case OPT_EXPOSURE:
+        problem = cli_read_real(value, &request->exposure);
+        return problem || fabs(request->exposure) > 1000.0 ? "takes stops from -1000 to 1000"
+                                                           : NULL;
     case OPT_SIZE: return cli_read_size(value, &request->render.width, &request->render.height);
     case OPT_SEED:
         problem              = cli_read_seed(value, &seed);
@@ -104,7 +131,9 @@ static const char *take_number(cli_render_request *request, int index, const cha
     case OPT_FPS:
         problem = cli_read_real(value, &request->fps);
         return problem || !(request->fps > 0.0) ? "takes a number > 0" : NULL;
-    case OPT_THREADS: return cli_read_count(value, 0, 1024, &request->threads);
+    case OPT_THREADS:
+        problem = cli_read_count(value, 0, 1024, &request->threads);
+        return problem ? "takes a whole number from 0 to 1024" : NULL;
     default: break;
     }
     cli_scene_option(&request->scene_options, OPTIONS[index].name, value, &problem);
@@ -138,18 +167,50 @@ static const char *take(void *user, int index, const char *value)
     return NULL;
 }
 
-void cli_render_request_help(void)
+void cli_render_request_help(const cli_render_request *request)
 {
     printf("usage: assay render SCENE.gltf -o OUT.exr [-m METHOD] [-p K=V ...] ...\n");
     cli_print_options(OPTIONS);
-    printf("\nParameters of the method `path` (assay methods tells more):\n");
     for (int i = 0; i < assay_method_count(); i++) {
         const assay_method_info method = assay_method_at(i);
-        for (const assay_param_desc *p = method.params; strcmp(method.name, "path") == 0 && p->name;
-             p++) {
-            printf("      --%-24s (default %s)\n", p->name, p->default_value);
+        if (strcmp(method.name, request->method) == 0) {
+            printf("\nParameters of the method `%s` (assay methods tells more):\n", method.name);
+            for (const assay_param_desc *p = method.params; p->name; p++) {
+                printf("      --%-24s (default %s)\n", p->name, p->default_value);
+            }
         }
     }
+}
+
+/* What the options say together; NULL, or what is wrong. */
+static const char *check_together(const cli_render_request *r)
+{
+    const char *layers = r->render.layers;
+    if (!r->scene) {
+        return "no scene given";
+    }
+    if (!r->output) {
+        return "no output given (-o OUT.exr)";
+    }
+    if (strcmp(r->output, "-") == 0 || (r->png && strcmp(r->png, "-") == 0)) {
+        return "images do not go to standard output; give the name of a file";
+    }
+    if (r->points && (r->png || r->dump)) {
+        return "--points makes a table alone: no --png, no --dump";
+    }
+    if (r->png && layers && !strstr(layers, "color") && !strstr(layers, "all")) {
+        return "--png shows the colour: --layers must have color in it";
+    }
+    const char *names[] = {r->output, r->png, r->stats, r->dump};
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < i; j++) {
+            if (names[i] && names[j] && strcmp(names[i], names[j]) == 0 &&
+                !cli_is_device(names[i])) {
+                return "two outputs have the same name";
+            }
+        }
+    }
+    return NULL;
 }
 
 bool cli_render_request_parse(int count, char **argv, cli_render_request *request)
@@ -161,16 +222,9 @@ bool cli_render_request_parse(int count, char **argv, cli_render_request *reques
     if (!cli_parse("render", count, argv, OPTIONS, take, take_unknown, request)) {
         return false;
     }
-    const char *missing = request->help      ? NULL
-                          : !request->scene  ? "no scene given"
-                          : !request->output ? "no output given (-o OUT.exr)"
-                          : request->points && (request->png || request->dump)
-                              ? "--points makes a table alone: no --png, no --dump"
-                              : NULL;
-    if (missing) {
-        fprintf(stderr, "assay render: %s (assay render --help tells how)\n", missing);
-    }
-    return !missing;
+    const char *problem = request->help ? NULL : check_together(request);
+    return !problem ||
+           cli_complain("render", "%s (assay render --help lists the options)", problem);
 }
 
 bool cli_frame_name(const cli_render_request *request, const char *pattern, long frame, char *out,
@@ -178,7 +232,7 @@ bool cli_frame_name(const cli_render_request *request, const char *pattern, long
 {
     const char *hash = strrchr(pattern, '#');
     int         used;
-    if (!request->has_frames) {
+    if (!request->has_frames || strcmp(pattern, "-") == 0 || cli_is_device(pattern)) {
         used = snprintf(out, size, "%s", pattern);
     } else if (hash) {
         const char *start = hash;

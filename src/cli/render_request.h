@@ -26,10 +26,11 @@ typedef struct {
 
 /* Reads the command line.  False after a message. */
 bool cli_render_request_parse(int count, char **argv, cli_render_request *request);
-void cli_render_request_help(void);
+void cli_render_request_help(const cli_render_request *request);
 
-/* The name of a frame's file: a run of '#' becomes the number with that many digits, else ".0007"
- * goes before the extension; without frames the name as it is.  False where it gets too long. */
+/* The name of a frame's file: the last run of '#' becomes the number with that many digits, else
+ * ".0007" goes before the extension; without frames, and for "-" and devices, the name as it is.
+ * False where it gets too long. */
 bool cli_frame_name(const cli_render_request *request, const char *pattern, long frame, char *out,
                     size_t size);
 

@@ -23,7 +23,7 @@ static const char *read_index(const char *text, int *value)
     if (!problem) {
         *value = (int)read;
     }
-    return problem;
+    return problem ? "takes a whole number from 0" : NULL;
 }
 
 static const char *read_background(const char *text, assay_rgb *value)

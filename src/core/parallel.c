@@ -24,7 +24,7 @@ static bool float_environment_is_sound(void)
 typedef struct {
     assay_context       *context;
     const char          *phase;
-    uint64_t             count;
+    uint64_t             before, total, count;
     assay_parallel_body  body;
     void                *user;
     atomic_uint_fast64_t next, done;
@@ -54,7 +54,8 @@ static void work(parallel_loop *loop, int worker, uint64_t *failed_index,
         }
         const uint64_t done = atomic_fetch_add(&loop->done, 1) + 1;
         if (worker == 0 && loop->phase &&
-            assay_progress(loop->context, loop->phase, done, loop->count) != ASSAY_OK) {
+            assay_progress(loop->context, loop->phase, loop->before + done, loop->total) !=
+                ASSAY_OK) {
             *failed_index  = UINT64_MAX;
             *failed_status = ASSAY_ERR_CANCELLED;
             atomic_store(&loop->stop, true);
@@ -66,13 +67,25 @@ static void work(parallel_loop *loop, int worker, uint64_t *failed_index,
 assay_status assay_parallel_for(assay_context *context, const char *phase, uint64_t count,
                                 assay_parallel_body body, void *user)
 {
-    parallel_loop loop = {
-        .context = context, .phase = phase, .count = count, .body = body, .user = user};
-    uint64_t     lowest  = UINT64_MAX;
-    assay_status result  = ASSAY_OK;
-    const int    threads = count < (uint64_t)assay_context_threads(context)
-                               ? (int)count
-                               : assay_context_threads(context);
+    return assay_parallel_part(context, phase, 0, count, count, body, user);
+}
+
+assay_status assay_parallel_part(assay_context *context, const char *phase, uint64_t before,
+                                 uint64_t total, uint64_t count, assay_parallel_body body,
+                                 void *user)
+{
+    parallel_loop loop    = {.context = context,
+                             .phase   = phase,
+                             .before  = before,
+                             .total   = total,
+                             .count   = count,
+                             .body    = body,
+                             .user    = user};
+    uint64_t      lowest  = UINT64_MAX;
+    assay_status  result  = ASSAY_OK;
+    const int     threads = count < (uint64_t)assay_context_threads(context)
+                                ? (int)count
+                                : assay_context_threads(context);
 #pragma omp parallel num_threads(threads > 0 ? threads : 1)
     {
         uint64_t     index  = UINT64_MAX;
@@ -92,7 +105,7 @@ assay_status assay_parallel_for(assay_context *context, const char *phase, uint6
                           "nearest");
     }
     if (result == ASSAY_OK && phase) {
-        return assay_progress(context, phase, count, count);
+        return assay_progress(context, phase, before + count, total);
     }
     return result;
 }

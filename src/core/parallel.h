@@ -18,4 +18,11 @@ typedef assay_status (*assay_parallel_body)(void *user, uint64_t index, int work
 assay_status assay_parallel_for(assay_context *context, const char *phase, uint64_t count,
                                 assay_parallel_body body, void *user);
 
+/* The same for one of several loops that make up a phase: `before` items were done by earlier ones,
+ * and all of them have `total`.  Cancelling waits for the item that runs, so long items are better
+ * cut up. */
+assay_status assay_parallel_part(assay_context *context, const char *phase, uint64_t before,
+                                 uint64_t total, uint64_t count, assay_parallel_body body,
+                                 void *user);
+
 #endif

@@ -39,8 +39,8 @@ typedef struct {
     assay_status (*prepare)(void *state, const assay_frame *frame);
     assay_status (*render)(void *state, const assay_frame *frame, assay_film *film,
                            assay_ray_counts *counts);
-    /* rows: probe_columns(state) doubles a point, as assay_probe_column_name names them.
-     * NULL: the method has no probes. */
+    /* rows: probe_columns(state) doubles a point, as assay_probe_column_name names them; zeros when
+     * the call begins.  NULL: the method has no probes. */
     assay_status (*probe)(void *state, const assay_frame *frame, const assay_probe_points *points,
                           double *rows, assay_ray_counts *counts);
     int (*probe_columns)(const void *state);

@@ -25,13 +25,20 @@ typedef struct {
     assay_array       *result;
 } probe_work_data;
 
+/* Of any length: scaled first, so that its square neither overflows nor vanishes. */
+static assay_vec3 unit(assay_vec3 v)
+{
+    const double largest = fmax(fmax(fabs(v.x), fabs(v.y)), fabs(v.z));
+    return vec3_normalize(vec3(v.x / largest, v.y / largest, v.z / largest));
+}
+
 static assay_status read_points(assay_context *context, const assay_array *table,
                                 probe_work_data *data)
 {
     const size_t rows = assay_array_rows(table);
     if (assay_array_columns(table) != 6) {
         return assay_fail(context, ASSAY_ERR_ARGUMENT,
-                          "points need 6 columns (x y z nx ny nz), not %zu",
+                          "points: the table must have 6 columns (x y z nx ny nz), not %zu",
                           assay_array_columns(table));
     }
     data->positions = assay_allocate(context, rows, sizeof *data->positions);
@@ -42,12 +49,14 @@ static assay_status read_points(assay_context *context, const assay_array *table
     for (size_t i = 0; i < rows; i++) {
         const double *v    = assay_array_values(table) + 6 * i;
         data->positions[i] = vec3(v[0], v[1], v[2]);
-        data->normals[i]   = vec3_normalize(vec3(v[3], v[4], v[5]));
+        data->normals[i]   = unit(vec3(v[3], v[4], v[5]));
         if (!vec3_finite(data->positions[i]) || !vec3_finite(vec3(v[3], v[4], v[5]))) {
-            return assay_fail(context, ASSAY_ERR_DOMAIN, "point %zu is not finite", i);
+            return assay_fail(context, ASSAY_ERR_DOMAIN, "points: row %zu (from 0) is not finite",
+                              i);
         }
         if (!(fabs(vec3_length(data->normals[i]) - 1.0) < 1e-6)) {
-            return assay_fail(context, ASSAY_ERR_ARGUMENT, "point %zu has no normal", i);
+            return assay_fail(context, ASSAY_ERR_ARGUMENT,
+                              "points: row %zu (from 0) has no normal: its length is 0", i);
         }
     }
     data->points = (assay_probe_points){rows, data->positions, data->normals};

@@ -16,6 +16,18 @@ assay_render_options assay_render_options_default(void)
     return (assay_render_options){.width = 512, .height = 512};
 }
 
+static assay_status fail_camera(const assay_scene *scene, const char *name)
+{
+    char   known[512] = "";
+    size_t used       = 0;
+    for (uint32_t i = 0; i < scene->world_camera_count && used < sizeof known; i++) {
+        used += (size_t)snprintf(known + used, sizeof known - used, "%s%u '%s'", i ? ", " : "", i,
+                                 scene->world_cameras[i].name);
+    }
+    return assay_fail(scene->context, ASSAY_ERR_ARGUMENT, "%s: no camera '%.64s'; there are: %s%s",
+                      scene->path, name, known, used < sizeof known ? "" : "...");
+}
+
 /* By name first, so that a camera called "1" can be had; then by number. */
 static assay_status find_camera(const assay_scene *scene, const char *name,
                                 const assay_camera **camera_out)
@@ -34,9 +46,7 @@ static assay_status find_camera(const assay_scene *scene, const char *name,
         }
     }
     if (index >= scene->world_camera_count) {
-        return assay_fail(scene->context, ASSAY_ERR_ARGUMENT,
-                          "%s: no camera '%.64s'; `assay scene` lists the %u there are",
-                          scene->path, name ? name : "0", scene->world_camera_count);
+        return fail_camera(scene, name);
     }
     *camera_out = &scene->world_cameras[index];
     return ASSAY_OK;
@@ -49,6 +59,12 @@ static assay_status check_options(assay_context *context, const assay_render_opt
         return assay_fail(context, ASSAY_ERR_ARGUMENT,
                           "an image must be 1 to %d pixels a side, not %d x %d",
                           ASSAY_IMAGE_MAX_SIDE, options->width, options->height);
+    }
+    /* The film says so, too, but only after the tree is built. */
+    if ((uint64_t)options->width * (uint64_t)options->height > ASSAY_FILM_MAX_PIXELS) {
+        return assay_fail(context, ASSAY_ERR_LIMIT,
+                          "an image of %d x %d is too large to render: at most %u pixels",
+                          options->width, options->height, ASSAY_FILM_MAX_PIXELS);
     }
     return ASSAY_OK;
 }

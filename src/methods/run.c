@@ -55,10 +55,13 @@ void assay_run_fill_stats(const assay_film *film, const assay_frame *frame,
         return;
     }
     const uint64_t pixels = (uint64_t)frame->width * (uint64_t)frame->height;
+    /* Camera paths are the same for the colour and its split. */
+    const assay_film_quantity paths =
+        frame->layers & ASSAY_LAYERS_COLOR ? ASSAY_FILM_COLOR : ASSAY_FILM_DIRECT;
     stats->relative_error = assay_film_relative_error(film);
     stats->spp_min        = UINT64_MAX;
     for (uint64_t i = 0; i < pixels; i++) {
-        const uint64_t n = assay_film_samples(film, i, ASSAY_FILM_COLOR);
+        const uint64_t n = assay_film_samples(film, i, paths);
         stats->samples += n;
         stats->spp_min = n < stats->spp_min ? n : stats->spp_min;
         stats->spp_max = n > stats->spp_max ? n : stats->spp_max;

@@ -14,7 +14,6 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "scene/gltf_limits.h"
-#include "scene/material.h"
 
 typedef enum { EXPECT_VALUE, EXPECT_VALUE_OR_END, EXPECT_KEY, EXPECT_KEY_OR_END, AFTER } expected;
 
@@ -417,53 +416,4 @@ void assay_json_release(assay_context *context, assay_json_document *document)
     assay_release(context, document->nodes);
     assay_release(context, document->strings);
     *document = (assay_json_document){0};
-}
-
-/* ---- looking ---- */
-
-const assay_json *assay_json_member(const assay_json *object, const char *key)
-{
-    for (const assay_json *m = object ? object->child : NULL; m; m = m->next) {
-        if (m->key && strcmp(m->key, key) == 0) {
-            return m;
-        }
-    }
-    return NULL;
-}
-
-double assay_json_number(const assay_json *object, const char *key, double otherwise)
-{
-    const assay_json *member = assay_json_member(object, key);
-    return member ? member->number : otherwise;
-}
-
-bool assay_json_bool(const assay_json *object, const char *key, bool otherwise)
-{
-    const assay_json *member = assay_json_member(object, key);
-    return member ? member->boolean : otherwise;
-}
-
-const char *assay_json_text(const assay_json *object, const char *key, const char *otherwise)
-{
-    const assay_json *member = assay_json_member(object, key);
-    return member ? member->text : otherwise;
-}
-
-uint32_t assay_json_index(const assay_json *object, const char *key)
-{
-    const assay_json *member = assay_json_member(object, key);
-    return member ? (uint32_t)member->number : ASSAY_NONE;
-}
-
-bool assay_json_numbers(const assay_json *object, const char *key, int count, double *values_out)
-{
-    const assay_json *member = assay_json_member(object, key);
-    if (!member) {
-        return false;
-    }
-    const assay_json *element = member->child;
-    for (int i = 0; i < count && element; i++, element = element->next) {
-        values_out[i] = element->number;
-    }
-    return true;
 }

@@ -111,21 +111,26 @@ static assay_affine blend(const assay_primitive *p, const assay_affine *joints, 
     return sum;
 }
 
+/* False where something about it is not finite. */
 static bool place_vertex(assay_scene *scene, assay_shape *shape, uint32_t v, const vertex *in,
                          const assay_affine *map, const assay_affine *normal_map, bool mirrored)
 {
     const size_t index = (size_t)shape->first_vertex + v;
     store3(scene->positions, index, 3, affine_point(map, in->position));
+    bool sound = vec3_finite(load3(scene->positions, index));
     if (shape->normals) {
-        store3(shape->normals, v, 3, vec3_normalize(affine_vector(normal_map, in->normal)));
+        const assay_vec3 normal = vec3_normalize(affine_vector(normal_map, in->normal));
+        store3(shape->normals, v, 3, normal);
+        sound = sound && vec3_finite(normal);
     }
     if (shape->tangents) {
-        const float w = shape->primitive->tangents[(size_t)v * 4 + 3];
-        store3(shape->tangents, v, 4, vec3_normalize(affine_vector(map, in->tangent)));
+        const assay_vec3 tangent = vec3_normalize(affine_vector(map, in->tangent));
+        const float      w       = shape->primitive->tangents[(size_t)v * 4 + 3];
+        store3(shape->tangents, v, 4, tangent);
         shape->tangents[(size_t)v * 4 + 3] = mirrored ? -w : w;
+        sound                              = sound && vec3_finite(tangent);
     }
-    return vec3_finite(load3(scene->positions, index)) &&
-           (!shape->normals || vec3_finite(load3(shape->normals, v)));
+    return sound;
 }
 
 /* Returns the first vertex that is not finite, vertex_count when all are. */

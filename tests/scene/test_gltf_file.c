@@ -304,8 +304,13 @@ static void test_lying_glb(void **state)
         {0, 0x46546C68, ASSAY_ERR_FORMAT, "is not a glTF file"},
     };
     size_t   count = 0;
-    uint8_t *glb   = make_glb(&count);
+    uint8_t *glb = make_glb(&count), *longer = make_glb(&count);
+    char     words[1024];
     (void)state;
+    put_u32(longer + 12, (uint32_t)count - 19); /* one byte more than there is */
+    assert_int_equal(load_bytes(longer, count, words, sizeof words), ASSAY_ERR_FORMAT);
+    assert_non_null(strstr(words, "are left"));
+    free(longer);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         uint8_t *copy = malloc(count);
         char     message[1024];

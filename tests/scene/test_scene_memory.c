@@ -12,57 +12,9 @@
 
 #include "scene/scene_build.h"
 #include "support/failing_context.h"
+#include "support/gltf_everything.h"
 #include "support/gltf_maker.h"
 #include "support/temporary.h"
-
-static const char png[] =
-    "data:image/png;base64,"
-    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8BQDwAEhQGAhKmM"
-    "IQAAAABJRU5ErkJggg==";
-
-/* A file with something of everything. */
-static char *make_text(void)
-{
-    static const float    normals[9]  = {0, 0, 1, 0, 0, 1, 0, 0, 1};
-    static const float    weights[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
-    static const uint8_t  joints[12]  = {0};
-    static const float    bind[16]    = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    static const float    times[2] = {0, 1}, moves[6] = {0, 0, 0, 1, 2, 3};
-    static const uint16_t indices[3] = {2, 1, 0};
-    gltf_maker           *maker      = gltf_maker_create();
-    gltf_shown_triangle(maker);
-    const int n = gltf_floats(maker, "VEC3", 3, normals),
-              w = gltf_floats(maker, "VEC4", 3, weights);
-    const int v = gltf_view(maker, joints, sizeof joints, 0);
-    const int j =
-        gltf_add(maker, "accessors",
-                 "\"bufferView\":%d,\"componentType\":5121,\"count\":3,\"type\":\"VEC4\"", v);
-    const int i = gltf_shorts(maker, 3, indices), b = gltf_floats(maker, "MAT4", 1, bind);
-    const int in  = gltf_floats(maker, "SCALAR", 2, times),
-              out = gltf_floats(maker, "VEC3", 2, moves);
-    gltf_add(maker, "images", "\"uri\":\"%s\"", png);
-    gltf_add(maker, "textures", "\"source\":0");
-    gltf_add(maker, "materials", "\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}");
-    gltf_add(maker, "meshes",
-             "\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":%d,\"JOINTS_0\":%d,"
-             "\"WEIGHTS_0\":%d},\"indices\":%d,\"material\":0,\"targets\":[{\"POSITION\":0}]}],"
-             "\"weights\":[0.5]",
-             n, j, w, i);
-    gltf_add(maker, "skins", "\"joints\":[2],\"inverseBindMatrices\":%d", b);
-    gltf_add(maker, "cameras", "\"type\":\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":1}");
-    gltf_add(maker, "nodes", "\"mesh\":1,\"skin\":0,\"weights\":[0.25]");
-    gltf_add(maker, "nodes",
-             "\"camera\":0,\"extensions\":{\"KHR_lights_punctual\":{\"light\":0},\"EXT_x\":{}}");
-    gltf_root(maker, "\"extensionsUsed\":[\"EXT_y\"],\"extensions\":{\"KHR_lights_punctual\":{"
-                     "\"lights\":[{\"type\":\"point\"}]}}");
-    gltf_add(maker, "animations",
-             "\"channels\":[{\"sampler\":0,\"target\":{\"node\":2,\"path\":\"translation\"}}],"
-             "\"samplers\":[{\"input\":%d,\"output\":%d}]",
-             in, out);
-    char *text = gltf_text(maker);
-    gltf_maker_destroy(maker);
-    return text;
-}
 
 static assay_status load_and_use(assay_context *context, void *user)
 {
@@ -83,7 +35,7 @@ static assay_status load_and_use(assay_context *context, void *user)
 /* Every n-th allocation of the library refused: ASSAY_ERR_MEMORY and nothing left. */
 static void test_refused_memory(void **state)
 {
-    char     *text     = make_text();
+    char     *text     = gltf_everything(&gltf_sound_content);
     const int refusals = failing_each(load_and_use, text);
     (void)state;
     print_message("%d refusals\n", refusals);
@@ -131,7 +83,7 @@ static bool on_progress(void *user, const char *phase, double fraction)
 
 static void test_cancel(void **state)
 {
-    char *text = make_text();
+    char *text = gltf_everything(&gltf_sound_content);
     (void)state;
     int calls = 0;
     for (int cancel_at = 1000; cancel_at >= 1;

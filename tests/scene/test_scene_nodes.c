@@ -307,6 +307,8 @@ static void test_several_scenes(void **state)
         gltf_shown_triangle(maker);
         gltf_add(maker, "nodes", "\"mesh\":0,\"translation\":[0,0,1]");
         gltf_add(maker, "nodes", "\"mesh\":0,\"translation\":[0,0,2]");
+        gltf_add(maker, "nodes", "\"children\":[4]"); /* of no scene, its child neither */
+        gltf_add(maker, "nodes", "\"mesh\":0");
         gltf_root(maker, "\"scene\":1,\"scenes\":[{\"nodes\":[0]},{\"nodes\":[1,2]}]");
         options.scene_index       = wanted;
         const assay_status status = gltf_load_status(maker, context, &options, &scene);

@@ -54,9 +54,21 @@ static assay_status create(assay_context *context, const assay_params *params, v
 
 static assay_status prepare(void *state, const assay_frame *frame)
 {
-    (void)state;
-    (void)frame;
+    const assay_path_state *path = state;
+    if (path->target_error > 0.0 && frame->camera && !(frame->layers & ASSAY_LAYERS_COLOR)) {
+        return assay_fail(frame->context, ASSAY_ERR_ARGUMENT,
+                          "parameter 'target_error' is the error of the colour: the layers must "
+                          "have color among them");
+    }
     return ASSAY_OK;
+}
+
+assay_status assay_path_fail_light(const assay_frame *frame)
+{
+    return assay_fail(frame->context, ASSAY_ERR_DOMAIN,
+                      "%s: gives light that is no finite number: its emission or its scale is too "
+                      "extreme",
+                      frame->world->scene->path);
 }
 
 static int probe_columns(const void *state)

@@ -7,6 +7,10 @@
 
 extern const assay_method assay_method_path;
 
+/* Samples of a pixel or point that are taken in one go.  A tile of them takes a fraction of a
+ * second, and so does cancelling. */
+enum { ASSAY_PATH_PASS = 32 };
+
 /* The parameters, read. */
 typedef struct {
     assay_context      *context;
@@ -20,6 +24,9 @@ typedef struct {
 
 assay_status assay_path_render(void *state, const assay_frame *frame, assay_film *film,
                                assay_ray_counts *counts);
+/* What a sample that is not finite means to the user; ASSAY_ERR_DOMAIN. */
+assay_status assay_path_fail_light(const assay_frame *frame);
+
 assay_status assay_path_probe(void *state, const assay_frame *frame,
                               const assay_probe_points *points, double *rows,
                               assay_ray_counts *counts);

@@ -2,7 +2,9 @@
  *
  * Differences are taken sample by sample with the same random numbers on both sides, so most of the
  * noise cancels and the gradient's variance can be measured like any other.  Along the normal the
- * difference is one-sided: behind a point on a surface there is no irradiance to compare with. */
+ * difference is one-sided: behind a point on a surface there is no irradiance to compare with.
+ *
+ * Invariant: between passes the result's rows hold means and sums of squared deviations. */
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/numerics.h"
@@ -28,19 +30,17 @@ typedef struct {
     assay_ray_counts         *worker_counts;
     double                    step; /* m */
     uint32_t                  quantities;
+    uint32_t                  first, count; /* samples of this pass */
 } probe_job;
 
-typedef struct {
-    double mean[3], squares[3];
-} running;
-
-static void add_sample(running *sum, double count, assay_rgb value)
+/* sums: three means and three sums of squared deviations from them. */
+static void add_sample(double sums[6], double count, assay_rgb value)
 {
     const double sample[3] = {value.r, value.g, value.b};
     for (int c = 0; c < 3; c++) {
-        const double deviation = sample[c] - sum->mean[c];
-        sum->mean[c] += deviation / count;
-        sum->squares[c] += deviation * (sample[c] - sum->mean[c]);
+        const double deviation = sample[c] - sums[c];
+        sums[c] += deviation / count;
+        sums[3 + c] += deviation * (sample[c] - sums[c]);
     }
 }
 
@@ -118,11 +118,11 @@ static void measure_gradients(const probe_job *job, uint64_t index, uint32_t sam
 
 static assay_status probe_point(void *user, uint64_t index, int worker)
 {
-    const probe_job   *job              = user;
-    assay_ray_counts  *counts           = &job->worker_counts[worker];
-    const assay_frame3 frame            = frame3_from_z(job->points->normals[index]);
-    running            sums[QUANTITIES] = {0};
-    for (uint32_t s = 0; s < job->state->spp; s++) {
+    const probe_job   *job    = user;
+    assay_ray_counts  *counts = &job->worker_counts[worker];
+    const assay_frame3 frame  = frame3_from_z(job->points->normals[index]);
+    double            *row    = job->rows + index * job->quantities * 6;
+    for (uint32_t s = job->first; s < job->first + job->count; s++) {
         const assay_path_light here =
             measure(job, index, s, job->points->positions[index], &frame, counts);
         assay_rgb value[QUANTITIES] = {total(here), here.direct, here.indirect};
@@ -133,19 +133,38 @@ static assay_status probe_point(void *user, uint64_t index, int worker)
             if (!rgb_finite(value[q])) {
                 return ASSAY_ERR_DOMAIN;
             }
-            add_sample(&sums[q], s + 1.0, value[q]);
-        }
-    }
-    const double n     = job->state->spp;
-    const double scale = n > 1.0 ? 1.0 / (n * (n - 1.0)) : 0.0;
-    double      *row   = job->rows + index * job->quantities * 6;
-    for (uint32_t q = 0; q < job->quantities; q++) {
-        for (int c = 0; c < 3; c++) {
-            row[6 * q + (uint32_t)c]     = sums[q].mean[c];
-            row[6 * q + 3 + (uint32_t)c] = sums[q].squares[c] * scale;
+            add_sample(row + 6 * (size_t)q, s + 1.0, value[q]);
         }
     }
     return ASSAY_OK;
+}
+
+static assay_status run_passes(probe_job *job)
+{
+    const uint64_t points = job->points->count;
+    const uint32_t passes = (job->state->spp - 1) / ASSAY_PATH_PASS + 1;
+    assay_status   status = ASSAY_OK;
+    for (uint32_t i = 0; i < passes && points > 0 && status == ASSAY_OK; i++) {
+        const uint32_t left = job->state->spp - job->first;
+        job->count          = left < ASSAY_PATH_PASS ? left : ASSAY_PATH_PASS;
+        status = assay_parallel_part(job->frame->context, "probe", i * points, passes * points,
+                                     points, probe_point, job);
+        job->first += job->count;
+    }
+    return status == ASSAY_ERR_DOMAIN ? assay_path_fail_light(job->frame) : status;
+}
+
+/* From sums of squared deviations to variances of the means. */
+static void finish_rows(const probe_job *job)
+{
+    const double n     = job->state->spp;
+    const double scale = n > 1.0 ? 1.0 / (n * (n - 1.0)) : 0.0;
+    const size_t count = job->points->count * job->quantities;
+    for (size_t i = 0; i < count; i++) {
+        for (int c = 3; c < 6; c++) {
+            job->rows[6 * i + (size_t)c] *= scale;
+        }
+    }
 }
 
 static double default_step(const assay_scene *scene)
@@ -174,16 +193,13 @@ assay_status assay_path_probe(void *state, const assay_frame *frame,
         .step = path->gradient_step > 0.0 ? path->gradient_step : default_step(frame->world->scene),
         .quantities = path->gradients ? QUANTITIES : QUANTITIES_PLAIN,
     };
-    const assay_status status =
-        assay_parallel_for(frame->context, "probe", points->count, probe_point, &job);
+    const assay_status status = run_passes(&job);
     for (int i = 0; i < threads; i++) {
         assay_ray_counts_add(counts, &worker_counts[i]);
     }
     assay_release(frame->context, worker_counts);
-    if (status == ASSAY_ERR_DOMAIN) {
-        return assay_fail(frame->context, status,
-                          "the scene gives light that is no finite number: its emission or scale "
-                          "is too extreme");
+    if (status == ASSAY_OK) {
+        finish_rows(&job);
     }
     return status;
 }

@@ -1,9 +1,9 @@
 /* path_render.c - an image by path tracing.
  *
  * Every pixel has two streams of samples: radiance through random places of the pixel, and
- * irradiance at the one visible point behind its centre.  Passes over all pixels follow one another
- * until enough; a pixel's samples are numbered through, so cutting them into passes changes no bit.
- */
+ * irradiance at the one visible point behind its centre.  Rounds follow one another until the
+ * error is small enough, each in passes over all pixels; a pixel's samples are numbered through, so
+ * cutting them up changes no bit. */
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/parallel.h"
@@ -154,26 +154,36 @@ static uint32_t next_count(const assay_path_state *state, uint32_t done, double 
     return count < state->max_spp - done ? count : state->max_spp - done;
 }
 
-static assay_status run_passes(render_pass *pass)
+/* `count` more samples of every pixel, in passes of at most ASSAY_PATH_PASS. */
+static assay_status run_round(render_pass *pass, uint32_t count)
 {
-    const assay_frame *frame = pass->frame;
-    const uint32_t     down  = (uint32_t)((frame->height + TILE - 1) / TILE);
-    pass->count              = pass->state->spp;
-    while (pass->count > 0) {
-        const assay_status status = assay_parallel_for(
-            frame->context, "render", (uint64_t)pass->tiles_across * down, render_tile, pass);
-        if (status == ASSAY_ERR_DOMAIN) {
-            return assay_fail(frame->context, status,
-                              "the scene gives light that is no finite number: its emission or "
-                              "scale is too extreme");
-        }
-        if (status != ASSAY_OK) {
-            return status;
-        }
+    const assay_frame *frame  = pass->frame;
+    const uint64_t     tiles  = pass->tiles_across * (((uint64_t)frame->height + TILE - 1) / TILE);
+    const uint32_t     passes = (count - 1) / ASSAY_PATH_PASS + 1;
+    const uint32_t     end    = pass->first + count;
+    assay_status       status = ASSAY_OK;
+    for (uint32_t i = 0; i < passes && status == ASSAY_OK; i++) {
+        const uint32_t left = end - pass->first;
+        pass->count         = left < ASSAY_PATH_PASS ? left : ASSAY_PATH_PASS;
+        status = assay_parallel_part(frame->context, "render", i * tiles, passes * tiles, tiles,
+                                     render_tile, pass);
         pass->first += pass->count;
-        pass->count = next_count(pass->state, pass->first, assay_film_relative_error(pass->film));
     }
-    return ASSAY_OK;
+    if (status == ASSAY_ERR_DOMAIN) {
+        return assay_path_fail_light(frame);
+    }
+    return status;
+}
+
+static assay_status run_rounds(render_pass *pass)
+{
+    assay_status status = ASSAY_OK;
+    uint32_t     count  = pass->state->spp;
+    while (count > 0 && status == ASSAY_OK) {
+        status = run_round(pass, count);
+        count  = next_count(pass->state, pass->first, assay_film_relative_error(pass->film));
+    }
+    return status;
 }
 
 assay_status assay_path_render(void *state, const assay_frame *frame, assay_film *film,
@@ -190,7 +200,7 @@ assay_status assay_path_render(void *state, const assay_frame *frame, assay_film
                                  .film          = film,
                                  .worker_counts = worker_counts,
                                  .tiles_across  = (uint32_t)((frame->width + TILE - 1) / TILE)};
-    const assay_status status = run_passes(&pass);
+    const assay_status status = run_rounds(&pass);
     for (int i = 0; i < threads; i++) {
         assay_ray_counts_add(counts, &worker_counts[i]);
     }
