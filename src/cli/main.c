@@ -1,7 +1,9 @@
 /* main.c - which command was asked for. */
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "console.h"
 
@@ -55,8 +57,22 @@ static int run_command(int argc, char **argv)
     return CLI_EXIT_USAGE;
 }
 
+/* A file that is opened must not become stdout or stderr because those were closed.  Writing to a
+ * stand-in that is open for reading fails, as it should. */
+static void fill_closed_streams(void)
+{
+    int fd = open("/dev/null", O_RDONLY);
+    while (fd >= 0 && fd <= STDERR_FILENO) {
+        fd = open("/dev/null", O_RDONLY);
+    }
+    if (fd >= 0) {
+        close(fd);
+    }
+}
+
 int main(int argc, char **argv)
 {
+    fill_closed_streams();
     const int code = run_command(argc, argv);
     /* A report that nobody got is no success; a full disk may show only now. */
     errno             = 0;

@@ -190,7 +190,7 @@ static const char *check_together(const cli_render_request *r)
         return "no scene given";
     }
     if (!r->output) {
-        return "no output given (-o OUT.exr)";
+        return "no output given: -o OUT.exr";
     }
     if (strcmp(r->output, "-") == 0 || (r->png && strcmp(r->png, "-") == 0)) {
         return "images do not go to standard output; give the name of a file";

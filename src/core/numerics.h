@@ -7,8 +7,8 @@
 #define ASSAY_CORE_NUMERICS_H
 
 #include <math.h>
-#include <stdint.h>
 #include <sleef.h>
+#include <stdint.h>
 
 #define ASSAY_PI 3.14159265358979323846
 #define ASSAY_INV_PI 0.31830988618379067154
@@ -43,8 +43,8 @@ typedef struct {
     double sin, cos;
 } assay_sincos;
 
-/* sin and cos of 2 pi x, within 3.5 units of the last place: the azimuth of a uniform number, without
- * the rounding of 2 pi. */
+/* sin and cos of 2 pi x, within 3.5 units of the last place: the azimuth of a uniform number,
+ * without the rounding of 2 pi. */
 static inline assay_sincos assay_sincos_turns(double x)
 {
     const Sleef_double_2 s = Sleef_cinz_sincospid1_u35purec(2.0 * x);

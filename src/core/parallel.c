@@ -74,18 +74,19 @@ assay_status assay_parallel_part(assay_context *context, const char *phase, uint
                                  uint64_t total, uint64_t count, assay_parallel_body body,
                                  void *user)
 {
-    parallel_loop loop    = {.context = context,
-                             .phase   = phase,
-                             .before  = before,
-                             .total   = total,
-                             .count   = count,
-                             .body    = body,
-                             .user    = user};
-    uint64_t      lowest  = UINT64_MAX;
-    assay_status  result  = ASSAY_OK;
-    const int     threads = count < (uint64_t)assay_context_threads(context)
-                                ? (int)count
-                                : assay_context_threads(context);
+    parallel_loop loop   = {.context = context,
+                            .phase   = phase,
+                            .before  = before,
+                            .total   = total,
+                            .count   = count,
+                            .body    = body,
+                            .user    = user};
+    uint64_t      lowest = UINT64_MAX;
+    assay_status  result = ASSAY_OK;
+    /* The analyzer does not look into OpenMP's regions. NOLINTBEGIN(clang-analyzer-deadcode*) */
+    const int threads = count < (uint64_t)assay_context_threads(context)
+                            ? (int)count
+                            : assay_context_threads(context);
 #pragma omp parallel num_threads(threads > 0 ? threads : 1)
     {
         uint64_t     index  = UINT64_MAX;
@@ -99,6 +100,7 @@ assay_status assay_parallel_part(assay_context *context, const char *phase, uint
             }
         }
     }
+    /* NOLINTEND(clang-analyzer-deadcode*) */
     if (result == ASSAY_ERR_INTERNAL) {
         return assay_fail(context, result,
                           "the floating-point environment flushes denormals or does not round to "

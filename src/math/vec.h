@@ -7,10 +7,7 @@
 
 #include "assay/types.h"
 
-static inline assay_vec3 vec3(double x, double y, double z)
-{
-    return (assay_vec3){x, y, z};
-}
+static inline assay_vec3 vec3(double x, double y, double z) { return (assay_vec3){x, y, z}; }
 
 static inline assay_vec3 vec3_add(assay_vec3 a, assay_vec3 b)
 {
@@ -33,10 +30,7 @@ static inline assay_vec3 vec3_mad(assay_vec3 a, double s, assay_vec3 b)
     return vec3(a.x + s * b.x, a.y + s * b.y, a.z + s * b.z);
 }
 
-static inline assay_vec3 vec3_negate(assay_vec3 a)
-{
-    return vec3(-a.x, -a.y, -a.z);
-}
+static inline assay_vec3 vec3_negate(assay_vec3 a) { return vec3(-a.x, -a.y, -a.z); }
 
 static inline double vec3_dot(assay_vec3 a, assay_vec3 b)
 {
@@ -48,10 +42,7 @@ static inline assay_vec3 vec3_cross(assay_vec3 a, assay_vec3 b)
     return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
-static inline double vec3_length(assay_vec3 a)
-{
-    return sqrt(vec3_dot(a, a));
-}
+static inline double vec3_length(assay_vec3 a) { return sqrt(vec3_dot(a, a)); }
 
 /* Zero stays zero. */
 static inline assay_vec3 vec3_normalize(assay_vec3 a)
@@ -75,14 +66,8 @@ static inline assay_vec3 vec3_max(assay_vec3 a, assay_vec3 b)
     return vec3(a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z);
 }
 
-static inline assay_rgb rgb(double r, double g, double b)
-{
-    return (assay_rgb){r, g, b};
-}
-static inline assay_rgb rgb_grey(double v)
-{
-    return rgb(v, v, v);
-}
+static inline assay_rgb rgb(double r, double g, double b) { return (assay_rgb){r, g, b}; }
+static inline assay_rgb rgb_grey(double v) { return rgb(v, v, v); }
 
 static inline assay_rgb rgb_add(assay_rgb a, assay_rgb b)
 {
@@ -94,10 +79,7 @@ static inline assay_rgb rgb_mul(assay_rgb a, assay_rgb b)
     return rgb(a.r * b.r, a.g * b.g, a.b * b.b);
 }
 
-static inline assay_rgb rgb_scale(assay_rgb a, double s)
-{
-    return rgb(a.r * s, a.g * s, a.b * s);
-}
+static inline assay_rgb rgb_scale(assay_rgb a, double s) { return rgb(a.r * s, a.g * s, a.b * s); }
 
 /* (1 - t) a + t b */
 static inline assay_rgb rgb_mix(assay_rgb a, assay_rgb b, double t)
@@ -111,10 +93,7 @@ static inline double rgb_max(assay_rgb a)
     return m > a.b ? m : a.b;
 }
 
-static inline bool rgb_is_black(assay_rgb a)
-{
-    return a.r == 0.0 && a.g == 0.0 && a.b == 0.0;
-}
+static inline bool rgb_is_black(assay_rgb a) { return a.r == 0.0 && a.g == 0.0 && a.b == 0.0; }
 
 static inline bool rgb_finite(assay_rgb a)
 {
