@@ -113,8 +113,22 @@ static assay_status draw(const assay_image *a, const assay_image *b, const diff_
     return status;
 }
 
-static assay_status compare(assay_context *context, const diff_request *request,
-                            bool *identical_out)
+/* The library knows images, not their names. */
+static assay_status compare_images(cli_console *console, const assay_context *context,
+                                   const diff_request *request, assay_image *const images[2],
+                                   assay_comparison **comparison_out)
+{
+    const assay_status status = assay_image_compare(images[0], images[1], comparison_out);
+    if (status != ASSAY_OK) {
+        cli_complain("diff", "%s, %s: %s", request->paths[0], request->paths[1],
+                     assay_context_error(context));
+        console->said = true;
+    }
+    return status;
+}
+
+static assay_status compare(cli_console *console, assay_context *context,
+                            const diff_request *request, bool *identical_out)
 {
     assay_image      *images[2]  = {NULL, NULL};
     assay_comparison *comparison = NULL;
@@ -126,7 +140,7 @@ static assay_status compare(assay_context *context, const diff_request *request,
         status = ASSAY_ERR_CANCELLED;
     }
     if (status == ASSAY_OK) {
-        status = assay_image_compare(images[0], images[1], &comparison);
+        status = compare_images(console, context, request, images, &comparison);
     }
     if (status == ASSAY_OK && request->heat_map) {
         status = draw(images[0], images[1], request);
@@ -147,9 +161,9 @@ static assay_status compare(assay_context *context, const diff_request *request,
 
 static int check_heat_map(const diff_request *r)
 {
-    int code = cli_check_extension("diff", "--heat-map", r->heat_map, ".png");
-    code     = code ? code : cli_check_not_input("diff", r->heat_map, r->paths[0]);
+    int code = cli_check_not_input("diff", r->heat_map, r->paths[0]);
     code     = code ? code : cli_check_not_input("diff", r->heat_map, r->paths[1]);
+    code     = code ? code : cli_check_extension("diff", "--heat-map", r->heat_map, ".png");
     return code ? code : cli_check_file("diff", r->heat_map);
 }
 
@@ -179,7 +193,8 @@ int cli_diff(int count, char **argv)
         return assay_status_exit_code(ASSAY_ERR_MEMORY);
     }
     bool      identical = false;
-    const int code = cli_console_finish(&console, context, compare(context, &request, &identical));
+    const int code =
+        cli_console_finish(&console, context, compare(&console, context, &request, &identical));
     assay_context_destroy(context);
     return code != 0 ? code : identical ? 0 : CLI_EXIT_DIFFERENT;
 }

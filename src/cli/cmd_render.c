@@ -222,18 +222,19 @@ static int check_outputs(const cli_render_request *r)
         return CLI_EXIT_USAGE;
     }
     const struct {
-        const char *option, *path, *extension;
-    } outputs[] = {{"--output", files.output, r->points ? ".npy" : ".exr"},
-                   {"--png", files.png, ".png"},
-                   {"--stats", files.stats, ".json"}};
+        const char *option, *asked, *path, *extension;
+    } outputs[] = {{"--output", r->output, files.output, r->points ? ".npy" : ".exr"},
+                   {"--png", r->png, files.png, ".png"},
+                   {"--stats", r->stats, files.stats, ".json"}};
     for (int i = 0; i < 3 && code == 0; i++) {
         const char *path = outputs[i].path;
-        if ((i > 0 && !*path) || strcmp(path, "-") == 0) {
+        if (!outputs[i].asked || strcmp(path, "-") == 0) {
             continue;
         }
-        code = cli_check_extension("render", outputs[i].option, path, outputs[i].extension);
-        code = code ? code : cli_check_not_input("render", path, r->scene);
+        code = cli_check_not_input("render", path, r->scene);
         code = code || !r->points ? code : cli_check_not_input("render", path, r->points);
+        code = code ? code
+                    : cli_check_extension("render", outputs[i].option, path, outputs[i].extension);
         code = code ? code : cli_check_file("render", path);
     }
     return code || !r->dump ? code : cli_check_new_folder("render", files.dump);

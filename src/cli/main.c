@@ -53,7 +53,7 @@ static int run_command(int argc, char **argv)
             return COMMANDS[i].run(argc - 2, argv + 2);
         }
     }
-    cli_complain(name, "unknown command; there are render, scene, methods, diff");
+    cli_complain(name, "unknown command or option; the commands are render, scene, methods, diff");
     return CLI_EXIT_USAGE;
 }
 

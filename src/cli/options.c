@@ -39,15 +39,14 @@ typedef struct {
     void               *user;
 } parser;
 
-/* True where there is no problem. */
+/* True where there is no problem; else says what is wrong with an option, or with its value. */
 static bool accept(const parser *p, const char *option, const char *value, const char *problem)
 {
     if (!problem) {
         return true;
     }
-    const int length = (int)strcspn(option, "=");
-    return value ? cli_complain(p->command, "%.*s '%s': %s (assay %s --help lists the options)",
-                                length, option, value, problem, p->command)
+    const int length = option[0] == '-' ? (int)strcspn(option, "=") : (int)strlen(option);
+    return value ? cli_complain(p->command, "%.*s '%s': %s", length, option, value, problem)
                  : cli_complain(p->command, "%.*s: %s (assay %s --help lists the options)", length,
                                 option, problem, p->command);
 }

@@ -114,9 +114,11 @@ void assay_film_destroy(assay_film *film)
     }
 }
 
+static bool fits(double x) { return fabs(x) <= ASSAY_FILM_MAX_VALUE; }
+
 bool assay_film_add(assay_film *film, uint64_t pixel, assay_film_quantity quantity, assay_rgb value)
 {
-    if (!rgb_finite(value)) {
+    if (!fits(value.r) || !fits(value.g) || !fits(value.b)) {
         return false;
     }
     if (!film->cells[quantity]) {

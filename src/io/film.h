@@ -53,8 +53,11 @@ assay_status assay_film_create(assay_context *context, int width, int height,
                                assay_layer_set layers, assay_film **film_out);
 void         assay_film_destroy(assay_film *film);
 
+/* The largest sample: its square, and so the variance, is a float yet. */
+#define ASSAY_FILM_MAX_VALUE 0x1p63
+
 /* Adds a sample to a quantity of a pixel; quantities of layers that were not asked for are dropped.
- * False, and nothing added, where it is not finite. */
+ * False, and nothing added, where it is not finite or larger than ASSAY_FILM_MAX_VALUE. */
 bool assay_film_add(assay_film *film, uint64_t pixel, assay_film_quantity quantity,
                     assay_rgb value);
 

@@ -7,6 +7,7 @@
 
 #include "core/alloc.h"
 #include "core/context.h"
+#include "core/numerics.h"
 #include "core/process.h"
 #include "methods/dump.h"
 #include "methods/run.h"
@@ -29,8 +30,8 @@ static assay_status fail_camera(const assay_scene *scene, const char *name)
 }
 
 /* By name first, so that a camera called "1" can be had; then by number. */
-static assay_status find_camera(const assay_scene *scene, const char *name,
-                                const assay_camera **camera_out)
+static assay_status find_camera(const assay_scene *scene, const char *name, double aspect,
+                                assay_camera *camera_out)
 {
     uint32_t index = 0;
     if (name) {
@@ -48,7 +49,11 @@ static assay_status find_camera(const assay_scene *scene, const char *name,
     if (index >= scene->world_camera_count) {
         return fail_camera(scene, name);
     }
-    *camera_out = &scene->world_cameras[index];
+    *camera_out = scene->world_cameras[index];
+    /* The camera of a scene without one shows it all in tall images, too. */
+    if (scene->camera_is_made && aspect < 1.0) {
+        camera_out->yfov = 2.0 * assay_atan2(assay_tan(0.5 * camera_out->yfov), aspect);
+    }
     return ASSAY_OK;
 }
 
@@ -196,7 +201,9 @@ assay_status assay_render(assay_scene *scene, const char *method_name, const ass
     if (!options) {
         options = &defaults;
     }
+    assay_camera camera = {0};
     assay_frame  frame  = {.context = context,
+                           .camera  = &camera,
                            .width   = options->width,
                            .height  = options->height,
                            .seed    = options->seed};
@@ -208,7 +215,8 @@ assay_status assay_render(assay_scene *scene, const char *method_name, const ass
         status = assay_layers_parse(context, options->layers, &frame.layers);
     }
     if (status == ASSAY_OK) {
-        status = find_camera(scene, options->camera, &frame.camera);
+        const double aspect = (double)options->width / (double)options->height;
+        status              = find_camera(scene, options->camera, aspect, &camera);
     }
     if (status == ASSAY_OK) {
         status = assay_run_build(scene, &world, &stats);

@@ -37,6 +37,11 @@ assay_status assay_run_build(const assay_scene *scene, assay_world **world_out,
     const double       start  = assay_process_seconds();
     const assay_status status = assay_world_create(scene, world_out);
     stats->seconds_build      = assay_process_seconds() - start;
+    if (status == ASSAY_ERR_DOMAIN) {
+        return assay_fail(scene->context, status,
+                          "%s: a light, or what is around the scene, is too bright to compute with",
+                          scene->path);
+    }
     return status;
 }
 

@@ -15,14 +15,13 @@ static assay_vec3 unit_or(assay_vec3 v, assay_vec3 otherwise)
 /* Looks along `forward`, with `up` as near as may be. */
 static void set_frame(assay_camera *camera, assay_vec3 forward, assay_vec3 up)
 {
-    const assay_vec3 back = vec3_negate(unit_or(forward, vec3(0.0, 0.0, -1.0)));
-    const assay_vec3 rise = vec3_mad(up, -vec3_dot(up, back), back);
-    camera->forward       = vec3_negate(back);
-    camera->up            = unit_or(rise, frame3_from_z(back).y);
-    if (!(vec3_length(rise) > 1e-9 * vec3_length(up))) {
-        camera->up = frame3_from_z(back).y;
-    }
-    camera->right = vec3_cross(camera->forward, camera->up);
+    const assay_vec3 back  = vec3_negate(unit_or(forward, vec3(0.0, 0.0, -1.0)));
+    const assay_vec3 rise  = vec3_mad(up, -vec3_dot(up, back), back);
+    const assay_vec3 other = frame3_from_z(back).y;
+    const bool       spans = vec3_length(rise) > 1e-9 * vec3_length(up);
+    camera->forward        = vec3_negate(back);
+    camera->up             = spans ? unit_or(rise, other) : other;
+    camera->right          = vec3_cross(camera->forward, camera->up);
 }
 
 static void place_camera(const assay_scene *scene, const assay_camera_desc *from, assay_camera *to)

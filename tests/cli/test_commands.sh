@@ -2,6 +2,26 @@
 # Every option of every command, with good and bad values: exit codes, stdout and stderr.  TAP.
 . tests/support/tap.sh
 
+# ---- the checks themselves: what they must refuse ----
+mutant() { # NAME CODE STDOUT STDERR FILE
+    code=$2
+    printf "$3" > "$folder/stdout"
+    printf "$4" > "$folder/stderr"
+    [ -z "$5" ] || : > "$out/$5"
+    ! failed_well 2 "word" > /dev/null
+    result $? "mutant: $1"
+    clear_out
+}
+mutant "another exit code" 3 "" "assay x: word\n" ""
+mutant "success" 0 "" "assay x: word\n" ""
+mutant "something on stdout" 2 "x" "assay x: word\n" ""
+mutant "no message" 2 "" "" ""
+mutant "two lines" 2 "" "assay x: word\nassay x: word\n" ""
+mutant "a message of someone else" 2 "" "word\n" ""
+mutant "a message about something else" 2 "" "assay x: other\n" ""
+mutant "a file left behind" 2 "" "assay x: word\n" a.exr
+mutant "a hidden file left behind" 2 "" "assay x: word\n" .assay-1-0.tmp
+
 # ---- help and the commands ----
 run
 { [ "$code" -eq 2 ] && [ ! -s "$folder/stdout" ] && grep -q usage "$folder/stderr"; }

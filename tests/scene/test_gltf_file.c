@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "assay/image.h"
 #include "scene/scene_build.h"
 #include "support/gltf_maker.h"
 #include "support/temporary.h"
@@ -22,7 +23,7 @@ static const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
 /* A triangle whose 36 bytes come from this URI. */
 static void write_gltf(const char *path, const char *uri)
 {
-    char      text[2048];
+    char      text[8192];
     const int length = snprintf(
         text, sizeof text,
         "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
@@ -151,6 +152,25 @@ static void test_what_is_no_file(void **state)
             fail_msg("%s: status %d, %s", cases[i].uri, status, message);
         }
     }
+    temporary_destroy(&t);
+}
+
+/* Sizes are looked at before anything is read: the file is sparse. */
+static void test_too_large(void **state)
+{
+    temporary t = temporary_create();
+    char      uri[6000], message[1024];
+    (void)state;
+    temporary_write(temporary_path(&t, "big.bin"), "x", 1);
+    assert_int_equal(truncate(t.path, ((off_t)1 << 31) + 1), 0);
+    write_gltf(temporary_path(&t, "a.gltf"), "big.bin");
+    assert_int_equal(load_path(t.path, message, sizeof message), ASSAY_ERR_LIMIT);
+    assert_non_null(strstr(message, "has 2147483649 bytes, at most 2147483648 are read"));
+    memset(uri, 'a', sizeof uri);
+    uri[sizeof uri - 1] = 0;
+    write_gltf(temporary_path(&t, "a.gltf"), uri);
+    assert_int_equal(load_path(t.path, message, sizeof message), ASSAY_ERR_LIMIT);
+    assert_non_null(strstr(message, "buffers/0: the path is longer"));
     temporary_destroy(&t);
 }
 
@@ -401,34 +421,56 @@ static void test_options_are_checked(void **state)
     }
 }
 
+/* A map is read, reported, and part of the digest; a missing one is named. */
 static void test_environment(void **state)
 {
-    assay_context      *context = gltf_context();
-    gltf_maker         *maker   = gltf_maker_create();
-    assay_scene_options options = assay_scene_options_default();
-    assay_scene        *scene   = NULL;
+    static const char *const names[] = {"R", "G", "B"};
+    assay_context           *context = gltf_context();
+    assay_scene_options      options = assay_scene_options_default();
+    temporary                t       = temporary_create();
+    assay_image             *image   = NULL;
+    char                     first[65], second[65], path[512], *report = NULL;
     (void)state;
-    gltf_shown_triangle(maker);
+    assert_int_equal(assay_image_create(context, 8, 4, &image), ASSAY_OK);
+    for (int c = 0; c < 3; c++) {
+        assay_channel channel;
+        assert_int_equal(assay_image_add_channel(image, names[c], ASSAY_CHANNEL_FLOAT, &channel),
+                         ASSAY_OK);
+        channel.data.f32[0] = 1.0f;
+    }
+    snprintf(path, sizeof path, "%s", temporary_path(&t, "sky.exr"));
+    assert_int_equal(assay_image_write_exr(image, path), ASSAY_OK);
+    assay_image_destroy(image);
+    temporary_write(temporary_path(&t, "a.bin"), corners, sizeof corners);
+    write_gltf(temporary_path(&t, "a.gltf"), "a.bin");
+    digest_of(t.path, &options, first);
+    options.environment_path = path;
+    digest_of(t.path, &options, second);
+    assert_string_not_equal(first, second);
+    assay_scene *scene = NULL;
+    assert_int_equal(assay_scene_load(context, t.path, &options, &scene), ASSAY_OK);
+    assert_true(assay_scene_describe(scene).has_environment);
+    assert_true(assay_scene_describe(scene).has_light);
+    assert_int_equal(assay_scene_report_json(scene, &report), ASSAY_OK);
+    assert_non_null(strstr(report, "sky.exr"));
+    assay_text_destroy(context, report);
+    assay_scene_destroy(scene);
     options.environment_path = "missing.hdr";
-    assert_int_equal(gltf_load_status(maker, context, &options, &scene), ASSAY_ERR_NOT_FOUND);
+    assert_int_equal(assay_scene_load(context, t.path, &options, &scene), ASSAY_ERR_NOT_FOUND);
     assert_non_null(strstr(assay_context_error(context), "missing.hdr"));
     assay_context_destroy(context);
+    temporary_destroy(&t);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_names_of_files),
-        cmocka_unit_test(test_longer_file),
-        cmocka_unit_test(test_relative_path),
-        cmocka_unit_test(test_what_is_no_file),
-        cmocka_unit_test(test_main_file),
-        cmocka_unit_test(test_data_uris),
-        cmocka_unit_test(test_glb),
-        cmocka_unit_test(test_lying_glb),
-        cmocka_unit_test(test_truncated_glb),
-        cmocka_unit_test(test_digest),
-        cmocka_unit_test(test_options_are_checked),
+        cmocka_unit_test(test_names_of_files), cmocka_unit_test(test_longer_file),
+        cmocka_unit_test(test_relative_path),  cmocka_unit_test(test_what_is_no_file),
+        cmocka_unit_test(test_too_large),      cmocka_unit_test(test_main_file),
+        cmocka_unit_test(test_data_uris),      cmocka_unit_test(test_glb),
+        cmocka_unit_test(test_lying_glb),      cmocka_unit_test(test_truncated_glb),
+        cmocka_unit_test(test_digest),         cmocka_unit_test(test_options_are_checked),
         cmocka_unit_test(test_environment),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -146,8 +146,9 @@ static void test_every_prefix_is_refused(void **state)
 
 static void test_tree(void **state)
 {
-    const char *text = "{\"n\":[1,2.5,-1e-3],\"o\":{\"t\":\"\\u00e9\\ud83d\\ude00x\",\"b\":true},"
-                       "\"z\":null,\"i\":7}";
+    const char *text =
+        "{\"n\":[1,2.5,-1e-3],\"o\":{\"t\":\"\\u00e9\\u20AC\\ud83d\\ude00x\",\"b\":true},"
+        "\"z\":null,\"i\":7}";
     assay_context      *context = gltf_context();
     assay_json_document d       = {0};
     (void)state;
@@ -157,7 +158,7 @@ static void test_tree(void **state)
     assert_int_equal(root->count, 4);
     assert_true(assay_json_numbers(root, "n", 3, n));
     assert_true(n[0] == 1.0 && n[1] == 2.5 && n[2] == -1e-3);
-    assert_string_equal(assay_json_text(o, "t", ""), "\xC3\xA9\xF0\x9F\x98\x80x");
+    assert_string_equal(assay_json_text(o, "t", ""), "\xC3\xA9\xE2\x82\xAC\xF0\x9F\x98\x80x");
     assert_true(assay_json_bool(o, "b", false));
     assert_int_equal(assay_json_member(root, "z")->type, ASSAY_JSON_NULL);
     assert_int_equal(assay_json_index(root, "i"), 7);
@@ -385,6 +386,8 @@ static void test_clean_text(void **state)
     assert_string_equal(clean, "a?b?[1m?");
     assay_text_clean("\xC3\xA9\xFF\xED\xA0\x80\xC3", clean, sizeof clean);
     assert_string_equal(clean, "\xC3\xA9?????");
+    assay_text_clean("\xE2\x82\xAC\xF0\x9F\x98\x80\xF4\x90\x80\x80", clean, sizeof clean);
+    assert_string_equal(clean, "\xE2\x82\xAC\xF0\x9F\x98\x80????");
     assay_text_clean("12345678901234\xC3\xA9", clean, sizeof clean);
     assert_string_equal(clean, "12345678901234");
 }

@@ -106,6 +106,34 @@ static void test_core(void **state)
     assay_context_destroy(context);
 }
 
+/* An image inside of the buffer; emission above 1 is kept, and told of. */
+static void test_image_in_a_view(void **state)
+{
+    static const uint8_t bytes[] = {
+        0x89, 0x50, 0x4E, 0x47, 0x0D, 0x0A, 0x1A, 0x0A, 0x00, 0x00, 0x00, 0x0D, 0x49, 0x48,
+        0x44, 0x52, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00, 0x00, 0x01, 0x08, 0x06, 0x00, 0x00,
+        0x00, 0x1F, 0x15, 0xC4, 0x89, 0x00, 0x00, 0x00, 0x0D, 0x49, 0x44, 0x41, 0x54, 0x78,
+        0xDA, 0x63, 0xFC, 0xCF, 0xC0, 0x50, 0x0F, 0x00, 0x04, 0x85, 0x01, 0x80, 0x84, 0xA9,
+        0x8C, 0x21, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4E, 0x44, 0xAE, 0x42, 0x60, 0x82};
+    assay_context *context = gltf_context();
+    gltf_maker    *maker   = gltf_maker_create();
+    (void)state;
+    gltf_shown_triangle(maker);
+    gltf_add(maker, "images", "\"bufferView\":%d,\"mimeType\":\"image/png\"",
+             gltf_view(maker, bytes, sizeof bytes, 0));
+    gltf_add(maker, "images", "\"uri\":\"unused.ktx2\"");
+    gltf_add(maker, "textures", "\"source\":0");
+    gltf_add(maker, "textures", "\"source\":1");
+    gltf_add(maker, "materials", "\"emissiveTexture\":{\"index\":0},\"emissiveFactor\":[4,1,0]");
+    assay_scene *scene = gltf_load(maker, context);
+    assert_int_equal(scene->images[0].width, 1);
+    assert_null(scene->images[1].texels); /* no material looks at it */
+    assert_true(scene->materials[0].emissive.r == 4.0);
+    assert_non_null(strstr(assay_scene_warning(scene, 0), "emissiveFactor above 1"));
+    assay_scene_destroy(scene);
+    assay_context_destroy(context);
+}
+
 static void test_extensions(void **state)
 {
     assay_context *context = gltf_context();
@@ -319,15 +347,11 @@ static void test_lights(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_defaults),
-        cmocka_unit_test(test_core),
-        cmocka_unit_test(test_extensions),
-        cmocka_unit_test(test_unlit),
-        cmocka_unit_test(test_texture_transform),
-        cmocka_unit_test(test_solid),
-        cmocka_unit_test(test_phong_and_ward),
-        cmocka_unit_test(test_force_diffuse),
-        cmocka_unit_test(test_lights),
+        cmocka_unit_test(test_defaults),        cmocka_unit_test(test_core),
+        cmocka_unit_test(test_image_in_a_view), cmocka_unit_test(test_extensions),
+        cmocka_unit_test(test_unlit),           cmocka_unit_test(test_texture_transform),
+        cmocka_unit_test(test_solid),           cmocka_unit_test(test_phong_and_ward),
+        cmocka_unit_test(test_force_diffuse),   cmocka_unit_test(test_lights),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -365,14 +365,16 @@ static void test_cameras(void **state)
     gltf_add(maker, "nodes",
              "\"camera\":0,\"rotation\":[0,0.7071067811865476,0,0.7071067811865476]");
     gltf_add(maker, "nodes", "\"camera\":1");
+    gltf_add(maker, "nodes", "\"camera\":1,\"matrix\":[1,0,0,0, 0,0,1,0, 0,0,1,0, 0,0,0,1]");
+    gltf_add(maker, "nodes", "\"camera\":1,\"scale\":[0,0,0]");
     assay_scene        *scene = gltf_load(maker, context);
     const assay_camera *c     = scene->world_cameras;
-    assert_int_equal(scene->world_camera_count, 3);
+    assert_int_equal(scene->world_camera_count, 5);
     assert_false(scene->camera_is_made);
     assert_string_equal(assay_scene_camera_name(scene, 0), "node");
     assert_string_equal(assay_scene_camera_name(scene, 1), "eye");
     assert_string_equal(assay_scene_camera_name(scene, 2), "camera 2");
-    assert_null(assay_scene_camera_name(scene, 3));
+    assert_null(assay_scene_camera_name(scene, 5));
     assert_true(c[0].orthographic && c[0].xmag == 2.0 && c[0].ymag == 3.0);
     assert_vec_near(c[0].position, vec3(7.0, 8.0, 9.0), 0.0);
     assert_vec_near(c[0].forward, vec3(0.0, 0.0, -1.0), 1e-15);
@@ -380,7 +382,7 @@ static void test_cameras(void **state)
     assert_vec_near(c[1].forward, vec3(-1.0, 0.0, 0.0), 1e-15);
     assert_vec_near(c[1].up, vec3(0.0, 1.0, 0.0), 1e-15);
     assert_vec_near(c[1].right, vec3(0.0, 0.0, -1.0), 1e-15);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 5; i++) {
         assert_near(vec3_length(c[i].up), 1.0, 1e-15);
         assert_near(vec3_dot(c[i].up, c[i].forward), 0.0, 1e-15);
         assert_vec_near(vec3_cross(c[i].forward, c[i].up), c[i].right, 1e-15);

@@ -37,16 +37,29 @@ static void keep_line(void *user, assay_log_level level, const char *line)
     snprintf(memory->log, sizeof memory->log, "%s", line);
 }
 
+static bool count_progress(void *user, const char *phase, double fraction)
+{
+    failing_memory *memory = user;
+    assert_non_null(phase);
+    assert_true(fraction >= 0.0 && fraction <= 1.0);
+    return ++memory->progress_calls != memory->cancel_at;
+}
+
 assay_context *failing_context(failing_memory *memory)
 {
-    const assay_context_options options = {
-        .threads = 1, .allocator = {allocate, release, memory}, .log = keep_line, .user = memory};
-    const uint64_t fail_at = memory->fail_at;
-    assay_context *context = NULL;
-    *memory                = (failing_memory){0};
+    const assay_context_options options   = {.threads   = 1,
+                                             .allocator = {allocate, release, memory},
+                                             .log       = keep_line,
+                                             .progress  = count_progress,
+                                             .user      = memory};
+    const uint64_t              fail_at   = memory->fail_at;
+    const uint64_t              cancel_at = memory->cancel_at;
+    assay_context              *context   = NULL;
+    *memory                               = (failing_memory){0};
     assert_int_equal(assay_context_create(&options, &context), ASSAY_OK);
-    memory->fail_at = fail_at;
-    memory->asked   = 0;
+    memory->fail_at   = fail_at;
+    memory->cancel_at = cancel_at;
+    memory->asked     = 0;
     return context;
 }
 

@@ -11,9 +11,11 @@ typedef struct {
     uint64_t fail_at;  /* which of them is refused, counted from 1; 0: none    */
     uint64_t live;     /* blocks held now; the context itself is one           */
     char     log[256]; /* last warning                                        */
+    uint64_t progress_calls;
+    uint64_t cancel_at; /* which call of the progress callback cancels, from 1; 0: none */
 } failing_memory;
 
-/* A context on the counted memory, one thread.  *memory is reset but for fail_at. */
+/* A context on the counted memory, one thread.  *memory is reset but for fail_at and cancel_at. */
 assay_context *failing_context(failing_memory *memory);
 
 /* Calls `work` with the 1st, 2nd, ... block refused until it succeeds.  Fails the test unless each

@@ -66,8 +66,8 @@ static assay_status prepare(void *state, const assay_frame *frame)
 assay_status assay_path_fail_light(const assay_frame *frame)
 {
     return assay_fail(frame->context, ASSAY_ERR_DOMAIN,
-                      "%s: gives light that is no finite number: its emission or its scale is too "
-                      "extreme",
+                      "%s: gives light that is too bright to compute with: its emission or its "
+                      "scale is too extreme",
                       frame->world->scene->path);
 }
 
