@@ -45,7 +45,7 @@ OURS    := $(wildcard include/assay/*.h src/*/*.[ch] src/*/*/*.[ch] src/*/*.cpp 
              tests/*/*.[ch])
 
 .PHONY: all help deps deps-test demo test install uninstall scenes layers format lint bench \
-        check-sanitize check-arm64 fuzz clean
+        mutants check-sanitize check-arm64 fuzz clean
 all: $(BUILD)/assay ## build the command
 
 help: ## list the targets
@@ -90,6 +90,11 @@ deps-test: ## install what the tests need (Debian)
 	@$(call install_missing,$(DEPS_BUILD) $(DEPS_TEST))
 
 # ---- the two commands ----
+MUTANT_ENV = BUILD=$(BUILD) \
+   MUTANT_COMPILE="$(CC) $(filter-out -DASSAY_VERSION%,$(CPPFLAGS)) $(CFLAGS)" \
+   MUTANT_LINK="$(CXX) $(LDFLAGS)" \
+   MUTANT_LIBS="$(HELP_O) $(filter-out %/main.o,$(GEN_O)) $(BUILD)/libassay.a -lcmocka $(LDLIBS)"
+
 DEMO := build/demo
 demo: deps ## build, render our Cornell box, write EXR and PNG
 	@$(MAKE) --no-print-directory -s -j$$(nproc) all
@@ -105,10 +110,12 @@ demo: deps ## build, render our Cornell box, write EXR and PNG
 
 test: deps-test ## build and run all tests
 	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(TESTS) $(BUILD)/make_scenes
-	@ASSAY_BIN=$(BUILD)/assay BUILD=$(BUILD) MUTANT_COMPILE="$(CC) $(filter-out -DASSAY_VERSION%,$(CPPFLAGS)) $(CFLAGS)" \
-	   MUTANT_LINK="$(CXX) $(LDFLAGS)" \
-	   MUTANT_LIBS="$(HELP_O) $(filter-out %/main.o,$(GEN_O)) $(BUILD)/libassay.a -lcmocka $(LDLIBS)" \
-	   tests/tools/run.sh $(TEST_SCRIPTS) $(TESTS)
+	@$(MUTANT_ENV) ASSAY_BIN=$(BUILD)/assay tests/tools/run.sh $(TEST_SCRIPTS) $(TESTS)
+
+mutants: deps-test ## break the source on purpose, also where `make test` does not
+	@$(MAKE) --no-print-directory -s -j$$(nproc) $(TESTS)
+	@for list in tests/mutants/*.txt; do $(MUTANT_ENV) MUTANTS=$$list \
+	   tests/tools/run.sh tests/mutants/test_mutants.sh || exit 1; done
 
 # ---- tests ----
 $(BUILD)/tests/bench/%: $(BUILD)/tests/bench/%.o $(BUILD)/libassay.a

@@ -1,6 +1,7 @@
 #!/bin/sh
-# Breaks the source on purpose, one line of mutants.txt at a time, and expects the named test to fail.
-# Prints TAP.  MUTANT_COMPILE, MUTANT_LINK and BUILD come from the Makefile.
+# Breaks the source on purpose, one line of a list at a time, and expects the named test to fail.  The
+# list is $MUTANTS, or mutants.txt.  Prints TAP.  MUTANT_COMPILE, MUTANT_LINK, MUTANT_LIBS and BUILD
+# come from the Makefile.
 set -u
 : "${MUTANT_COMPILE:?run this through make test}" "${MUTANT_LINK:?}" "${BUILD:?}"
 folder=$(mktemp -d) || exit 1
@@ -25,5 +26,5 @@ while IFS= read -r line; do
     else
         echo "ok $number - $test sees $(basename "$file"): $change"
     fi
-done < tests/mutants/mutants.txt
+done < "${MUTANTS:-tests/mutants/mutants.txt}"
 echo "1..$number"

@@ -36,6 +36,13 @@ static int integer(assay_random *r, int low, int high)
     return low + (int)(assay_random_next(r) * (high - low + 1));
 }
 
+/* From 1 to 2^octaves, about evenly on a logarithmic scale; no libm, so the same everywhere. */
+static double magnitude(assay_random *r, int octaves)
+{
+    const int octave = integer(r, 0, octaves - 1);
+    return ldexp(1.0 + assay_random_next(r), octave);
+}
+
 static assay_vec3 in_cube(assay_random *r, double side)
 {
     const double x = uniform(r, -side, side), y = uniform(r, -side, side);
@@ -85,7 +92,7 @@ case_mesh *case_soup(uint32_t triangle_count, uint64_t seed)
     case_mesh   *m      = new_mesh();
     assay_random random = assay_random_start(seed, ASSAY_STAGE_TEST, 1, 0);
     for (uint32_t i = 0; i < triangle_count; i++) {
-        const double     size   = 0.02 * pow(50.0, assay_random_next(&random));
+        const double     size   = 1.0 / magnitude(&random, 6);
         const assay_vec3 centre = in_cube(&random, 1.0);
         const assay_vec3 e = in_cube(&random, size), f = in_cube(&random, size);
         const uint32_t   a    = add_vertex(m, centre);
@@ -285,8 +292,8 @@ static assay_ray along_axis(assay_random *r, const case_mesh *m, uint32_t triang
         d[(k + 2) % 3] = -0.0;
     }
     /* Each coordinate from one corner or the other: on many planes of boxes and triangles. */
-    const assay_vec3 mixed = vec3(integer(r, 0, 1) ? p.x : q.x, integer(r, 0, 1) ? p.y : q.y,
-                                  integer(r, 0, 1) ? p.z : q.z);
+    const double     x = integer(r, 0, 1) ? p.x : q.x, y = integer(r, 0, 1) ? p.y : q.y;
+    const assay_vec3 mixed     = vec3(x, y, integer(r, 0, 1) ? p.z : q.z);
     const assay_vec3 direction = vec3(d[0], d[1], d[2]);
     const double     back      = integer(r, 0, 1) ? 0.0 : 4.0 * mesh_size(m);
     return assay_ray_start(vec3_mad(mixed, -back, direction), direction, INFINITY);
@@ -308,8 +315,9 @@ static assay_ray from_afar(assay_random *r, double size, double factor, assay_ve
 
 static assay_vec3 odd_lengths(assay_random *r, assay_vec3 d)
 {
-    double c[3] = {d.x, d.y, d.z};
-    c[integer(r, 0, 2)] *= ldexp(1.0, -integer(r, 0, 80));
+    double    c[3]    = {d.x, d.y, d.z};
+    const int smaller = integer(r, 0, 2);
+    c[smaller] *= ldexp(1.0, -integer(r, 0, 80));
     if (integer(r, 0, 3) == 0) {
         c[integer(r, 0, 2)] = 0.0;
     }
@@ -349,9 +357,8 @@ assay_ray case_ray(const case_mesh *mesh, case_kind kind, uint64_t seed, uint64_
         ray           = in_plane(r, mesh, t);
         ray.direction = vec3_add(ray.direction, in_cube(r, size * ldexp(1.0, -integer(r, 10, 60))));
         return ray;
-    case CASE_FAR: return from_afar(r, size, 1e5, integer(r, 0, 1) ? inside : on_edge);
-    case CASE_FARTHER:
-        return from_afar(r, size, pow(10.0, uniform(r, 2, 14)), integer(r, 0, 1) ? inside : a);
+    case CASE_FAR: return from_afar(r, size, 1e5, part < 0.5 ? inside : on_edge);
+    case CASE_FARTHER: return from_afar(r, size, magnitude(r, 46), part < 0.5 ? inside : a);
     case CASE_LENGTHS:
         ray           = toward(r, size, inside);
         ray.direction = odd_lengths(r, ray.direction);

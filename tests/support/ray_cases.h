@@ -37,7 +37,7 @@ typedef enum {
     CASE_IN_PLANE, /* in the plane of a triangle, exactly so for integer coordinates    */
     CASE_GRAZING,  /* nearly in the plane of a triangle                                 */
     CASE_FAR,      /* from 1e5 times the mesh away                                      */
-    CASE_FARTHER,  /* from up to 1e14 times the mesh away                               */
+    CASE_FARTHER,  /* from up to 7e13 times the mesh away                               */
     CASE_LENGTHS,  /* directions of lengths 2^-300 to 2^300, with components near zero  */
     CASE_BOUNDED,  /* with t_after, triangle_after and t_max in the way                 */
     CASE_KINDS
