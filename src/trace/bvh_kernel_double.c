@@ -11,7 +11,7 @@ static const double least_step = 0x1p-40; /* of a direction against its largest 
 /* The ray by tau = t |dz|, in the world's axes. */
 typedef struct {
     double o[3], inverse[3];
-    double widening, slack;
+    double widening;
 } slabs;
 
 static slabs slabs_start(const bvh_query *query)

@@ -40,11 +40,11 @@ _Static_assert(sizeof(bvh_leaf) % BVH_UNIT == 0, "a leaf is a whole number of un
 /* Safety margins, derived in docs/exact-hits.md, and the shape of the tree.  Only tests change
  * them: to see a wrong margin fail, or another tree give the same answers. */
 typedef struct {
-    double box_margin;     /* of the distances to boxes, in units of M |1/d|               */
-    double residual_limit; /* of a decision in plain arithmetic, in units of M, else it is
-                              refined                                                      */
-    uint32_t leaf_size;    /* 1 .. BVH_LEAF_SIZE                                           */
-    uint32_t width;        /* 2 .. BVH_WIDTH                                               */
+    double   box_margin;     /* of the distances to boxes, in units of M |1/d|             */
+    double   residual_limit; /* of a plain decision, in units of M; above, it is refined   */
+    uint32_t leaf_size;      /* 1 .. BVH_LEAF_SIZE                                         */
+    uint32_t width;          /* 2 .. BVH_WIDTH                                             */
+    int64_t  embree_limit;   /* bytes that Embree may use while it builds; 0: any number   */
 } bvh_tuning;
 
 bvh_tuning bvh_tuning_default(void);

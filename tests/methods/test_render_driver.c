@@ -327,110 +327,6 @@ static void layers_do_not_touch_each_other(void **state)
     close_bench(&b);
 }
 
-/* ---- points ---- */
-
-static assay_status probe(bench *b, const double *values, size_t rows, size_t columns,
-                          assay_array **result)
-{
-    assay_array *points = NULL;
-    assert_int_equal(assay_array_create(b->context, rows, columns, &points), ASSAY_OK);
-    memcpy(assay_array_data(points), values, rows * columns * sizeof *values);
-    const assay_status status =
-        assay_render_probes(b->scene, "path", b->params, 1, points, result, NULL);
-    assay_array_destroy(points);
-    return status;
-}
-
-static void bad_points(void **state)
-{
-    (void)state;
-    static const struct {
-        size_t       columns;
-        double       row[7];
-        assay_status status;
-    } cases[] = {
-        {5, {0, 0, 0, 0, 1}, ASSAY_ERR_ARGUMENT},
-        {7, {0, 0, 0, 0, 1, 0, 0}, ASSAY_ERR_ARGUMENT},
-        {6, {0, 0, 0, 0, 0, 0}, ASSAY_ERR_ARGUMENT},
-        {6, {NAN, 0, 0, 0, 1, 0}, ASSAY_ERR_DOMAIN},
-        {6, {0, INFINITY, 0, 0, 1, 0}, ASSAY_ERR_DOMAIN},
-        {6, {0, 0, 0, 0, NAN, 0}, ASSAY_ERR_DOMAIN},
-        {6, {0, 0, 0, 0, 0, -INFINITY}, ASSAY_ERR_DOMAIN},
-    };
-    bench b = open_bench(1, lit_floor);
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        assay_array *const no_result = (assay_array *)&b;
-        assay_array       *result    = no_result;
-        assert_int_equal(probe(&b, cases[i].row, 1, cases[i].columns, &result), cases[i].status);
-        assert_ptr_equal(result, no_result);
-        assert_non_null(strstr(assay_context_error(b.context), "points:"));
-    }
-    close_bench(&b);
-}
-
-/* Normals of any length, positions anywhere; no points at all. */
-static void odd_points(void **state)
-{
-    (void)state;
-    static const double rows[4][6] = {{0, 1e-3, 0, 0, 1, 0},
-                                      {0, 1e-3, 0, 0, 1e-300, 0},
-                                      {0, 1e-3, 0, 0, 1e300, 0},
-                                      {1e30, 1e30, 0, 0, 1, 0}};
-    bench               b          = open_bench(1, lit_floor);
-    assay_array        *result     = NULL;
-    assert_int_equal(probe(&b, rows[0], 4, 6, &result), ASSAY_OK);
-    assert_int_equal(assay_array_columns(result), ASSAY_PROBE_COLUMNS);
-    /* Random numbers differ from row to row; what they measure does not. */
-    for (int i = 0; i < 3; i++) {
-        assert_true(measure_probe(result, i, "E.R").value > 0.0);
-    }
-    assert_true(measure_probe(result, 3, "E.R").value == 0.0);
-    assay_array_destroy(result);
-    result = NULL;
-    set(&b, "gradients", "off");
-    set(&b, "spp", "1000000000");
-    assert_int_equal(probe(&b, rows[0], 0, 6, &result), ASSAY_OK);
-    assert_int_equal(assay_array_rows(result), 0);
-    assert_int_equal(assay_array_columns(result), ASSAY_PROBE_COLUMNS_PLAIN);
-    assay_array_destroy(result);
-    close_bench(&b);
-}
-
-/* Sample n is n times the mean of n samples less (n - 1) times that of n - 1.  From the samples one
- * by one, mean and variance of 70, which are three passes. */
-static void probes_over_passes(void **state)
-{
-    (void)state;
-    enum { COUNT = 70 };
-    static const double row[6] = {0.3, 1e-3, 0.2, 0, 1, 0};
-    bench               b      = open_bench(1, lit_floor);
-    double              before = 0.0, samples[COUNT], sum = 0.0, squares = 0.0;
-    measured            last = {0};
-    set(&b, "gradients", "off");
-    set(&b, "estimator", "bsdf");
-    for (int n = 1; n <= COUNT; n++) {
-        char         spp[16];
-        assay_array *result = NULL;
-        snprintf(spp, sizeof spp, "%d", n);
-        set(&b, "spp", spp);
-        assert_int_equal(probe(&b, row, 1, 6, &result), ASSAY_OK);
-        last           = measure_probe(result, 0, "E.R");
-        samples[n - 1] = n * last.value - before;
-        before         = n * last.value;
-        assay_array_destroy(result);
-    }
-    for (int i = 0; i < COUNT; i++) {
-        sum += samples[i] / COUNT;
-    }
-    for (int i = 0; i < COUNT; i++) {
-        squares += (samples[i] - sum) * (samples[i] - sum);
-    }
-    assert_true(squares > 0.0);
-    assert_near(last.value, sum, 1e-9 * sum);
-    assert_near(last.error, sqrt(squares / (COUNT * (COUNT - 1.0))), 1e-9 * last.error);
-    close_bench(&b);
-}
-
 /* ---- dumps ---- */
 
 static assay_status dump_once(uint64_t fail_at, uint64_t cancel_at)
@@ -523,9 +419,6 @@ int main(void)
         cmocka_unit_test(passes_change_no_bit),
         cmocka_unit_test(target_error_is_the_same_for_all_threads),
         cmocka_unit_test(layers_do_not_touch_each_other),
-        cmocka_unit_test(bad_points),
-        cmocka_unit_test(odd_points),
-        cmocka_unit_test(probes_over_passes),
         cmocka_unit_test(refused_memory_leaves_no_dump),
         cmocka_unit_test(cancelling_leaves_no_dump),
         cmocka_unit_test(refused_memory_for_texts),

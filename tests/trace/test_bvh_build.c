@@ -193,6 +193,37 @@ static void refused_memory(void **state)
     case_mesh_destroy(star);
 }
 
+/* Embree is refused memory at every stage of its work. */
+static void refused_memory_of_embree(void **state)
+{
+    (void)state;
+    case_mesh *star    = case_star(5, 58);
+    bvh_tuning tuning  = bvh_tuning_default();
+    int        refused = 0;
+    for (tuning.embree_limit = 1;; tuning.embree_limit += 40000) {
+        failing_memory        memory    = {0};
+        assay_context        *context   = failing_context(&memory);
+        const assay_triangles triangles = case_triangles(star);
+        assay_bvh            *bvh       = NULL;
+        const assay_status    status = bvh_create_tuned(context, &triangles, &tuning, NULL, &bvh);
+        if (status != ASSAY_OK) {
+            assert_int_equal(status, ASSAY_ERR_MEMORY);
+            assert_true(strlen(assay_context_error(context)) > 0);
+            assert_null(bvh);
+            refused++;
+        }
+        assay_bvh_destroy(bvh);
+        assert_int_equal(memory.live, 1);
+        assay_context_destroy(context);
+        if (status == ASSAY_OK) {
+            break;
+        }
+    }
+    print_message("#| Embree refused memory %d times\n", refused);
+    assert_true(refused > 3);
+    case_mesh_destroy(star);
+}
+
 typedef struct {
     int calls, cancel_at;
 } stopper;
@@ -295,6 +326,7 @@ int main(void)
         cmocka_unit_test(collinear_corners_are_never_hit),
         cmocka_unit_test(memory_is_bounded),
         cmocka_unit_test(refused_memory),
+        cmocka_unit_test(refused_memory_of_embree),
         cmocka_unit_test(cancelled_build),
         cmocka_unit_test(unknown_isa),
         cmocka_unit_test(every_isa_builds),

@@ -142,11 +142,11 @@ static assay_status probe_point(void *user, uint64_t index, int worker)
 static assay_status run_passes(probe_job *job)
 {
     const uint64_t points = job->points->count;
-    const uint32_t passes = (job->state->spp - 1) / ASSAY_PATH_PASS + 1;
+    const uint32_t passes = (job->state->spp - 1) / ASSAY_PATH_POINT_PASS + 1;
     assay_status   status = ASSAY_OK;
     for (uint32_t i = 0; i < passes && points > 0 && status == ASSAY_OK; i++) {
         const uint32_t left = job->state->spp - job->first;
-        job->count          = left < ASSAY_PATH_PASS ? left : ASSAY_PATH_PASS;
+        job->count          = left < ASSAY_PATH_POINT_PASS ? left : ASSAY_PATH_POINT_PASS;
         status = assay_parallel_part(job->frame->context, "probe", i * points, passes * points,
                                      points, probe_point, job);
         job->first += job->count;

@@ -154,17 +154,17 @@ static uint32_t next_count(const assay_path_state *state, uint32_t done, double 
     return count < state->max_spp - done ? count : state->max_spp - done;
 }
 
-/* `count` more samples of every pixel, in passes of at most ASSAY_PATH_PASS. */
+/* `count` more samples of every pixel, in passes of at most ASSAY_PATH_PIXEL_PASS. */
 static assay_status run_round(render_pass *pass, uint32_t count)
 {
     const assay_frame *frame  = pass->frame;
     const uint64_t     tiles  = pass->tiles_across * (((uint64_t)frame->height + TILE - 1) / TILE);
-    const uint32_t     passes = (count - 1) / ASSAY_PATH_PASS + 1;
+    const uint32_t     passes = (count - 1) / ASSAY_PATH_PIXEL_PASS + 1;
     const uint32_t     end    = pass->first + count;
     assay_status       status = ASSAY_OK;
     for (uint32_t i = 0; i < passes && status == ASSAY_OK; i++) {
         const uint32_t left = end - pass->first;
-        pass->count         = left < ASSAY_PATH_PASS ? left : ASSAY_PATH_PASS;
+        pass->count         = left < ASSAY_PATH_PIXEL_PASS ? left : ASSAY_PATH_PIXEL_PASS;
         status = assay_parallel_part(frame->context, "render", i * tiles, passes * tiles, tiles,
                                      render_tile, pass);
         pass->first += pass->count;
