@@ -1,6 +1,6 @@
 /* bvh.h - which triangle a ray meets first; the only room that knows Embree.
  *
- * Embree builds the tree; the decision is our own double test (docs/determinism.md), so every bit
+ * Embree builds the tree; the decision is our own double test (docs/exact-hits.md), so every bit
  * of an answer (t, u, v, triangle, hit or miss) is the same on every machine, for any tree and any
  * vector width. */
 #ifndef ASSAY_TRACE_BVH_H
@@ -38,7 +38,8 @@ typedef struct {
     uint32_t triangle;
 } assay_hit;
 
-/* Errors: MEMORY, CANCELLED, INTERNAL (Embree refused; its words are in the message).
+/* Errors: MEMORY, CANCELLED, LIMIT (a tree of 64 GiB or more), ARGUMENT (ASSAY_ISA is unknown),
+ * INTERNAL (Embree refused; its words are in the message).
  * A tree over no triangle is legal and misses everything. */
 assay_status assay_bvh_create(assay_context *context, const assay_triangles *triangles,
                               assay_bvh **bvh_out);
