@@ -268,7 +268,7 @@ static assay_status work_once(const char *method, work_kind kind, uint64_t fail_
     assay_image *image = NULL, *const no_image = (assay_image *)&memory;
     assay_array *result = NULL, *const no_result = (assay_array *)&memory;
     assay_render_stats stats = {.threads = -1};
-    assert_int_equal(make_params(context, method, refused ? "1" : "33", &params), ASSAY_OK);
+    assert_int_equal(make_params(context, method, refused ? "1" : "65", &params), ASSAY_OK);
     assert_int_equal(assay_array_create(context, 3, 6, &points), ASSAY_OK);
     for (size_t i = 0; i < 3; i++) {
         assay_array_data(points)[6 * i]     = 0.2 * (double)i;
@@ -342,7 +342,7 @@ static void refused_memory(void **state)
     for_each_method(check_memory);
 }
 
-/* Once a tile of each pass at least: 2 tiles; one point in two passes or more. */
+/* Once a tile of each pass at least: 2 tiles; one point in one pass or more. */
 static void check_cancel(const char *method)
 {
     assert_true(until_success(method, WORK_IMAGE, false, ASSAY_ERR_CANCELLED) >= 4);

@@ -74,11 +74,12 @@ static measured see(gltf_maker *m, double sky, const setting *settings)
     return mean;
 }
 
-/* Irradiance with one bounce at (0, 0, z), facing +Z or -Z. */
+/* Irradiance with up to three bounces, of which black sheets take all but the first, at (0, 0, z),
+ * facing +Z or -Z. */
 static measured receive(gltf_maker *m, double sky, double z, bool reversed)
 {
     const setting settings[] = {
-        {"bounces", "1"}, {"gradients", "off"}, {"spp", "64"}, {NULL, NULL}};
+        {"bounces", "3"}, {"gradients", "off"}, {"spp", "64"}, {NULL, NULL}};
     const double   point[6] = {0, 0, z, 0, 0, reversed ? -1 : 1};
     assay_context *context  = measure_context(1);
     assay_scene   *scene    = load(m, context, sky);

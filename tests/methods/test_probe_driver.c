@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "core/numerics.h"
 #include "support/measure.h"
 #include "support/near.h"
 #include "support/scene_builder.h"
@@ -118,38 +119,37 @@ static void odd_points(void **state)
     close_bench(&b);
 }
 
-/* Sample n is n times the mean of n samples less (n - 1) times that of n - 1.  From the samples one
- * by one, mean and variance of 70, which are three passes. */
+/* Every path either finds the lamp, and is worth 4 pi, or nothing.  So n times the mean is 4 pi
+ * times a whole number c, and the sum of squared deviations (4 pi)^2 c (n - c) / n. */
 static void probes_over_passes(void **state)
 {
     (void)state;
-    enum { COUNT = 70 };
-    static const double row[6] = {0.3, 1e-3, 0.2, 0, 1, 0};
-    bench               b      = open_bench();
-    double              before = 0.0, samples[COUNT], sum = 0.0, squares = 0.0;
-    measured            last = {0};
+    static const int    counts[] = {1, 2, 64, 4095, 4096, 4097, 4098, 8191, 8192, 8193, 10000};
+    static const double row[6]   = {0.3, 1e-3, 0.2, 0, 1, 0};
+    const double        worth    = 4.0 * ASSAY_PI;
+    double              hits = 0.0, hits_4096 = 0.0;
+    bench               b = open_bench();
     set(&b, "gradients", "off");
     set(&b, "estimator", "bsdf");
-    for (int n = 1; n <= COUNT; n++) {
-        char         spp[16];
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
+        const int    n      = counts[i];
         assay_array *result = NULL;
+        char         spp[16];
         snprintf(spp, sizeof spp, "%d", n);
         set(&b, "spp", spp);
         assert_int_equal(probe(&b, row, 1, 6, &result), ASSAY_OK);
-        last           = measure_probe(result, 0, "E.R");
-        samples[n - 1] = n * last.value - before;
-        before         = n * last.value;
+        const measured e = measure_probe(result, 0, "E.R");
+        const double   c = floor(n * e.value / worth + 0.5);
+        assert_near(n * e.value / worth, c, 1e-8);
+        assert_near(n * (n - 1.0) * e.error * e.error, worth * worth * c * (n - c) / n, 1e-6 * n);
+        /* More samples are the same ones and new ones. */
+        assert_true(c >= hits && c - hits <= n - (i ? counts[i - 1] : 0));
+        assert_true(n != 8192 || c != 2.0 * hits_4096);
+        hits      = c;
+        hits_4096 = n == 4096 ? c : hits_4096;
         assay_array_destroy(result);
     }
-    for (int i = 0; i < COUNT; i++) {
-        sum += samples[i] / COUNT;
-    }
-    for (int i = 0; i < COUNT; i++) {
-        squares += (samples[i] - sum) * (samples[i] - sum);
-    }
-    assert_true(squares > 0.0);
-    assert_near(last.value, sum, 1e-9 * sum);
-    assert_near(last.error, sqrt(squares / (COUNT * (COUNT - 1.0))), 1e-9 * last.error);
+    assert_true(hits > 100.0 && hits < 9900.0);
     close_bench(&b);
 }
 

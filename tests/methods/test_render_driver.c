@@ -266,14 +266,14 @@ static void render_digest(int threads, const setting *settings, char digest[65],
     close_bench(&b);
 }
 
-/* 80 samples are three passes; so are 7 and what doubling adds to them, cut at other places. */
+/* 150 samples are three passes; 7 and what doubling adds to them are cut at other places. */
 static void passes_change_no_bit(void **state)
 {
     (void)state;
-    static const setting once[]   = {{"spp", "80"}, {NULL, NULL}};
+    static const setting once[]   = {{"spp", "150"}, {NULL, NULL}};
     static const setting rounds[] = {
-        {"spp", "7"}, {"target_error", "1e-9"}, {"max_spp", "80"}, {NULL, NULL}};
-    static const setting less[] = {{"spp", "79"}, {NULL, NULL}};
+        {"spp", "7"}, {"target_error", "1e-9"}, {"max_spp", "150"}, {NULL, NULL}};
+    static const setting less[] = {{"spp", "149"}, {NULL, NULL}};
     char                 digest[3][65];
     assay_render_stats   stats[3];
     render_digest(2, once, digest[0], &stats[0]);
@@ -281,9 +281,10 @@ static void passes_change_no_bit(void **state)
     render_digest(2, less, digest[2], &stats[2]);
     assert_string_equal(digest[0], digest[1]);
     assert_string_not_equal(digest[0], digest[2]);
-    assert_int_equal(stats[1].spp_min, 80);
+    assert_int_equal(stats[1].spp_min, 150);
     assert_true(stats[0].relative_error == stats[1].relative_error);
     assert_true(stats[0].shadow_rays == stats[1].shadow_rays);
+    assert_true(stats[0].scatter_rays == stats[1].scatter_rays);
 }
 
 static void target_error_is_the_same_for_all_threads(void **state)

@@ -9,7 +9,7 @@ extern const assay_method assay_method_path;
 
 /* Samples that are taken in one go, of each pixel and of each point: as many as keep an item of
  * work (a tile, a point) long against starting threads and short for who waits for cancelling. */
-enum { ASSAY_PATH_PIXEL_PASS = 32, ASSAY_PATH_POINT_PASS = 4096 };
+enum { ASSAY_PATH_PIXEL_PASS = 64, ASSAY_PATH_POINT_PASS = 4096 };
 
 /* The parameters, read. */
 typedef struct {

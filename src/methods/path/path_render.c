@@ -108,7 +108,8 @@ static assay_status render_pixel(const render_pass *pass, int x, int y, assay_ra
     if (frame->layers & (ASSAY_LAYERS_COLOR | ASSAY_LAYERS_SPLIT)) {
         status = add_radiance(pass, x, y, pixel, counts);
     }
-    if (status != ASSAY_OK || !(frame->layers & (ASSAY_LAYERS_GBUFFER | ASSAY_LAYERS_IRRADIANCE))) {
+    const bool first = pass->first == 0 && (frame->layers & ASSAY_LAYERS_GBUFFER);
+    if (status != ASSAY_OK || !(first || (frame->layers & ASSAY_LAYERS_IRRADIANCE))) {
         return status;
     }
     assay_visible_point point = {.material = UINT32_MAX, .primitive = UINT32_MAX};
