@@ -128,7 +128,7 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(HELP_O) $(filter-out %/main.o,$(GEN_O)) $
 	$(CXX) $(LDFLAGS) $^ -lcmocka $(LDLIBS) -o $@
 
 check-sanitize: deps-test ## the tests under ASan and UBSan
-	@$(MAKE) --no-print-directory test BUILD=build/sanitize CC=clang CXX=clang++ OPT="-O1 -g" \
+	@LSAN_OPTIONS=suppressions=$(CURDIR)/tests/tools/lsan.supp $(MAKE) --no-print-directory test BUILD=build/sanitize CC=clang CXX=clang++ OPT="-O1 -g" \
 	   SAN="-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer" \
 	   TEST_SCRIPTS="$(filter-out %/test_same_bits.sh %/test_install.sh %/test_mutants.sh,$(TEST_SCRIPTS))"
 

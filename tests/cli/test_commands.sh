@@ -1,4 +1,5 @@
 #!/bin/sh
+# shellcheck disable=SC2012,SC2046,SC2059,SC2086
 # Every option of every command, with good and bad values: exit codes, stdout and stderr.  TAP.
 . tests/support/tap.sh
 
@@ -28,7 +29,6 @@ run
 result $? "no command: usage on stderr, exit code 2"
 for words in --help -h help --version "render --help" "render -h" "scene --help" "scene -h" \
     "methods --help" "methods -h" "diff --help" "diff -h"; do
-    # shellcheck disable=SC2086
     run $words
     went_well && [ -s "$folder/stdout" ]
     result $? "$words: stdout, exit code 0"
@@ -50,7 +50,6 @@ done
 
 # ---- render: what is refused; WORD | ARGUMENTS ----
 while IFS='|' read -r word arguments; do
-    # shellcheck disable=SC2086
     refuses "render $arguments" 2 "$word" render $box -o "$out/a.exr" $small $arguments
 done <<'TABLE'
 --frobnicate|--frobnicate
@@ -158,7 +157,6 @@ such.gltf" -o "$out/a.exr"
 render() { # NAME ARGUMENT...
     what=$1
     shift
-    # shellcheck disable=SC2086
     accepts "$what" render $box $small "$@"
 }
 same() { # NAME A B
@@ -253,7 +251,6 @@ sphere() { # NAME ARGUMENT...
 sphere "a scene with options of its own" -o "$folder/s.exr"
 for option in "--background 0,0.5,1" "--background=0,0,0" "--env $folder/env.exr" \
     "--env $folder/env.exr --env-scale 2" "--env $folder/env.exr --env-rotation-deg -90"; do
-    # shellcheck disable=SC2086
     sphere "$option" $option -o "$folder/t.exr"
     differs "$option: another image" "$folder/s.exr" "$folder/t.exr"
     mv "$folder/t.exr" "$folder/s.exr"

@@ -1,4 +1,5 @@
 #!/bin/sh
+# shellcheck disable=SC2012,SC2046,SC2059,SC2086
 # Inputs that are no inputs: folders, devices, pipes, empty and random files, tables that are no
 # points.  Each is refused in one line that names it, at once, and nothing is written.  TAP.
 . tests/support/tap.sh
@@ -10,7 +11,6 @@ mkdir "$folder/directory"
 awk 'BEGIN { srand(7); for (i = 0; i < 4096; i++) printf "\\%03o", int(rand() * 256) }' |
     while IFS= read -r text; do printf "$text"; done > "$folder/random"
 printf '{"asset":{"version":"2.0"}' > "$folder/half.gltf"
-# shellcheck disable=SC2086
 "$assay" render $box $small --layers color -o "$folder/good.exr"
 head -c 400 "$folder/good.exr" > "$folder/cut.exr"
 write_npy "$folder/good.npy" "1, 6" 0 h 0 0 1 0

@@ -1,4 +1,5 @@
 #!/bin/sh
+# shellcheck disable=SC2012,SC2046,SC2059,SC2086
 # Ctrl-C and its relatives: exit code 130, one line, nothing left behind.  And what a terminal gets
 # to see.  No check depends on how long something takes, only on that it ends.  TAP.
 #
@@ -40,7 +41,6 @@ stopped() { # NAME
 }
 
 for name in INT TERM HUP; do
-    # shellcheck disable=SC2086
     start render $box $endless -o "$out/a.exr" --png "$out/a.png" --stats "$out/a.json" \
         --dump "$out/bundle"
     wait_for "the bundle" bundle_is_begun
@@ -48,7 +48,6 @@ for name in INT TERM HUP; do
     stopped "SIG$name while rendering"
 done
 
-# shellcheck disable=SC2086
 start render $box $endless -o "$out/a.exr" --dump "$out/bundle"
 wait_for "the bundle" bundle_is_begun
 kill -INT $pid
@@ -85,7 +84,6 @@ clear_out
 
 # nohup: SIGHUP is ignored when the program begins.
 trap '' HUP
-# shellcheck disable=SC2086
 start render $box $endless -o "$out/a.exr" --dump "$out/bundle"
 trap - HUP
 wait_for "the bundle" bundle_is_begun

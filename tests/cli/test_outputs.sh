@@ -1,4 +1,5 @@
 #!/bin/sh
+# shellcheck disable=SC2012,SC2046,SC2059,SC2086
 # Outputs that cannot be written: no half file is left, what was there stays, and it is said in one
 # line with exit code 3 (or 2 where the option itself is wrong).  TAP.
 . tests/support/tap.sh
@@ -9,17 +10,13 @@ full="File too large"
 
 # Every kind of output under the name NAME. $1: what it is, $2: exit code, $3: word, $4: name.
 each_output() {
-    # shellcheck disable=SC2086
-    {
-        refuses "image: $1" "$2" "$3" $plain -o "$4"
-        refuses "preview: $1" "$2" "$3" $plain -o "$folder/whole.exr" --png "$4"
-        refuses "statistics: $1" "$2" "$3" $plain -o "$folder/whole.exr" --stats "$4"
-        refuses "table: $1" "$2" "$3" $probe -o "$4"
-        refuses "heat map: $1" "$2" "$3" diff "$folder/a.exr" "$folder/a.exr" --heat-map "$4"
-    }
+    refuses "image: $1" "$2" "$3" $plain -o "$4"
+    refuses "preview: $1" "$2" "$3" $plain -o "$folder/whole.exr" --png "$4"
+    refuses "statistics: $1" "$2" "$3" $plain -o "$folder/whole.exr" --stats "$4"
+    refuses "table: $1" "$2" "$3" $probe -o "$4"
+    refuses "heat map: $1" "$2" "$3" diff "$folder/a.exr" "$folder/a.exr" --heat-map "$4"
 }
 
-# shellcheck disable=SC2086
 accepts "an image to compare with" $plain -o "$folder/a.exr"
 each_output "folder is missing" 3 "nowhere" "$folder/nowhere/x"
 each_output "is a folder" 3 "is a folder" "$out"
@@ -46,10 +43,8 @@ else
     skip "/dev/full" "there is none"
 fi
 for option in -o --png --stats; do
-    # shellcheck disable=SC2086
     accepts "$option /dev/null" $plain -o "$folder/b.exr" $option /dev/null
 done
-# shellcheck disable=SC2086
 accepts "frames to /dev/null" $plain --frames 0:1 -o /dev/null
 [ -c /dev/null ] && [ ! -e /dev/null.0000 ]
 result $? "/dev/null stays what it is"
@@ -75,9 +70,7 @@ closed "methods" "standard output" methods
 closed "methods --json" "standard output" methods --json
 closed "diff" "standard output" diff "$folder/a.exr" "$folder/a.exr"
 closed "render --help" "standard output" render --help
-# shellcheck disable=SC2086
 closed "render --stats -" "standard output" $plain -o "$folder/b.exr" --stats -
-# shellcheck disable=SC2086
 "$assay" $plain -o "$folder/b.exr" --png "$folder/b.png" 0<&- >&- 2>&-
 result $? "render with all streams closed"
 "$assay" diff "$folder/a.exr" "$folder/b.exr" > /dev/null
@@ -108,7 +101,6 @@ refuses "bundle is there already" 3 "there already" $plain -o "$out/a.exr" --dum
 is_empty "$folder/there"
 result $? "what is there stays"
 refuses "bundle without a parent" 3 "nowhere" $plain -o "$out/a.exr" --dump "$folder/nowhere/x"
-# shellcheck disable=SC2086
 accepts "bundle" $plain -o "$out/a.exr" --dump "$out/bundle"
 [ "$(ls -A "$out")" = "a.exr
 bundle" ] && [ -f "$out/bundle/manifest.json" ] && ! find "$out" -name '.*' -type f | grep -q .
@@ -133,7 +125,6 @@ limited "image is larger than the disk" 8 "$full" $big -o "$out/a.exr"
 limited "preview is larger than the disk" 8 "$full" $big --layers color -o /dev/null \
     --png "$out/a.png"
 limited "bundle is larger than the disk" 64 "$full" $big -o "$out/a.exr" --dump "$out/bundle"
-# shellcheck disable=SC2046
 write_npy "$folder/many.npy" "100, 6" $(yes 0 h 0 0 1 0 | head -n 100)
 limited "table is larger than the disk" 8 "$full" render $box --spp 1 --points "$folder/many.npy" \
     -o "$out/a.npy"
@@ -141,10 +132,28 @@ cp "$folder/a.exr" "$folder/old.exr"
 limited "an image in place of another" 8 "$full" $big -o "$folder/old.exr"
 cmp -s "$folder/a.exr" "$folder/old.exr"
 result $? "the old image stays"
-"$assay" $big -o "$folder/c.exr" --seed 1
-"$assay" $big -o "$folder/d.exr" --seed 2
-limited "heat map is larger than the disk" 1 "$full" diff "$folder/c.exr" "$folder/d.exr" \
-    --heat-map "$out/h.png"
+for seed in 1 2; do
+    "$assay" render $box --size 160x160 --spp 2 --layers color --seed $seed -o "$folder/$seed.exr"
+done
+limited "heat map is larger than the disk" 8 "$full" diff "$folder/1.exr" "$folder/2.exr" \
+    --scale 20 --heat-map "$out/h.png"
+
+# ---- too little memory ----
+starved() { # ARGUMENT...
+    (
+        ulimit -v 1500000
+        exec timeout -k 5 120 "$assay" "$@"
+    ) > "$folder/stdout" 2> "$folder/stderr" < /dev/null
+    code=$?
+}
+starved $plain -o "$folder/b.exr"
+if [ $code -eq 0 ]; then
+    starved render $box --size 8000x8000 --spp 1 -o "$out/a.exr" --dump "$out/bundle"
+    failed_well 3 "out of memory"
+    result $? "an image that does not fit the memory"
+else
+    skip "an image that does not fit the memory" "the program itself does not fit"
+fi
 
 # ---- a full disk that is one ----
 mkdir "$folder/disk"
@@ -155,7 +164,6 @@ if mount -t tmpfs -o size=64k none "$folder/disk" 2> /dev/null; then
     clear_out() { :; }
     refuses "full disk: image" 3 "No space left" $big -o "$out/a.exr"
     refuses "full disk: bundle" 3 "No space left" $big -o /dev/null --dump "$out/bundle"
-    # shellcheck disable=SC2086
     accepts "what fits the disk" $plain -o "$out/a.exr"
     rm "$out/a.exr"
     out=$keep

@@ -236,8 +236,10 @@ static void backs_are_culled_for_the_camera_alone(void **state)
     /* The back of a sheet that is black and does not shine keeps the sky from the point, and from
      * the light's rays; the solid angle that it leaves is of 1e-6. */
     for (int reversed = 0; reversed <= 1; reversed++) {
-        gltf_maker *m     = gltf_maker_create();
-        const int   black = gltf_add(m, "materials", "\"pbrMetallicRoughness\":{" BLACK "}", 1.0);
+        gltf_maker *m = gltf_maker_create();
+        const int   black =
+            gltf_add(m, "materials",
+                     "\"pbrMetallicRoughness\":{" BLACK "},\"extensions\":{" NO_COAT "}", 1.0);
         add_sheet(m, 0.001, 1, reversed, "", black);
         assert_near(receive(m, 4.0, 0.0, false).value, 0.0, 1e-4);
     }
