@@ -42,11 +42,11 @@ static double triangle_power(const assay_scene *scene, uint32_t triangle)
         double       sum    = 0.0;
         assay_random random = assay_random_start(0, ASSAY_STAGE_LIGHTS, triangle, 0);
         for (int i = 0; i < EMISSION_LOOKS; i++) {
-            const double  u1 = assay_random_next(&random);
-            const double  u2 = assay_random_next(&random);
-            assay_surface surface;
-            const double  root = sqrt(u1);
-            assay_surface_at(scene, triangle, root * (1.0 - u2), root * u2, &surface);
+            const double       u1 = assay_random_next(&random);
+            const double       u2 = assay_random_next(&random);
+            assay_surface      surface;
+            const assay_point2 at = assay_sample_triangle(u1, u2);
+            assay_surface_at(scene, triangle, at.x, at.y, &surface);
             sum += rgb_luminance(assay_surface_emission(scene, &surface, true));
         }
         radiance = 0.9 * sum / EMISSION_LOOKS + 0.1 * plain;
@@ -168,11 +168,11 @@ void assay_lights_destroy(assay_lights *lights)
 static bool sample_triangle(const assay_scene *scene, uint32_t triangle, assay_vec3 point,
                             double probability, double u1, double u2, assay_light_sample *out)
 {
-    const double  root = sqrt(u1);
-    assay_surface surface;
-    double        area;
-    assay_vec3    ng;
-    assay_surface_at(scene, triangle, root * (1.0 - u2), root * u2, &surface);
+    const assay_point2 at = assay_sample_triangle(u1, u2);
+    assay_surface      surface;
+    double             area;
+    assay_vec3         ng;
+    assay_surface_at(scene, triangle, at.x, at.y, &surface);
     assay_triangle_geometry(scene, triangle, &ng, &area);
     const assay_vec3 to_light = vec3_sub(surface.position, point);
     const double     squared  = vec3_dot(to_light, to_light);
@@ -339,9 +339,4 @@ assay_rgb assay_lights_infinite_radiance(const assay_lights *lights, assay_vec3 
     return lights->scene->environment
                ? assay_environment_radiance(lights->scene->environment, direction)
                : lights->scene->options.background;
-}
-
-uint32_t assay_lights_emissive_triangles(const assay_lights *lights)
-{
-    return lights->emitter_count;
 }

@@ -50,6 +50,4 @@ double assay_lights_pdf_infinite(const assay_lights *lights, assay_vec3 directio
 /* Radiance from outside the scene along a unit direction. */
 assay_rgb assay_lights_infinite_radiance(const assay_lights *lights, assay_vec3 direction);
 
-uint32_t assay_lights_emissive_triangles(const assay_lights *lights);
-
 #endif
