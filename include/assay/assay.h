@@ -3,6 +3,7 @@
 #define ASSAY_ASSAY_H
 
 #include "assay/array.h"
+#include "assay/basis.h"
 #include "assay/compare.h"
 #include "assay/context.h"
 #include "assay/image.h"
