@@ -245,8 +245,15 @@ static bool sample_punctual(const assay_punctual_light *light, assay_vec3 point,
     return !rgb_is_black(out->radiance);
 }
 
-static bool sample_infinite(const assay_scene *scene, double probability, double u1, double u2,
-                            assay_light_sample *out)
+/* Density of a constant background over the sphere, or over the half of it that is of use. */
+static double background_pdf(const assay_receiver *receiver)
+{
+    const assay_vec3 n = receiver->normal;
+    return n.x == 0.0 && n.y == 0.0 && n.z == 0.0 ? 0.25 * ASSAY_INV_PI : 0.5 * ASSAY_INV_PI;
+}
+
+static bool sample_infinite(const assay_scene *scene, const assay_receiver *receiver,
+                            double probability, double u1, double u2, assay_light_sample *out)
 {
     double pdf;
     if (scene->environment) {
@@ -255,8 +262,9 @@ static bool sample_infinite(const assay_scene *scene, double probability, double
             return false;
         }
     } else {
-        out->direction = assay_sample_sphere(u1, u2);
-        pdf            = 0.25 * ASSAY_INV_PI;
+        const assay_vec3 d = assay_sample_sphere(u1, u2);
+        out->direction     = vec3_dot(d, receiver->normal) < 0.0 ? vec3_negate(d) : d;
+        pdf                = background_pdf(receiver);
     }
     out->radiance = scene->environment
                         ? assay_environment_radiance(scene->environment, out->direction)
@@ -268,10 +276,12 @@ static bool sample_infinite(const assay_scene *scene, double probability, double
     return !rgb_is_black(out->radiance);
 }
 
-bool assay_lights_sample(const assay_lights *lights, assay_vec3 point, bool delta_only,
-                         double u_choice, double u1, double u2, assay_light_sample *sample_out)
+bool assay_lights_sample(const assay_lights *lights, const assay_receiver *receiver,
+                         bool delta_only, double u_choice, double u1, double u2,
+                         assay_light_sample *sample_out)
 {
     const assay_scene         *scene  = lights->scene;
+    const assay_vec3           point  = receiver->point;
     const assay_distribution1 *choice = delta_only ? lights->delta_choice : lights->choice;
     if (!choice) {
         return false;
@@ -292,7 +302,7 @@ bool assay_lights_sample(const assay_lights *lights, assay_vec3 point, bool delt
         lit = sample_punctual(&scene->punctual[index - lights->emitter_count], point, probability,
                               &sample);
     } else {
-        lit = sample_infinite(scene, probability, u1, u2, &sample);
+        lit = sample_infinite(scene, receiver, probability, u1, u2, &sample);
     }
     if (lit) {
         *sample_out = sample;
@@ -322,7 +332,8 @@ double assay_lights_pdf_triangle(const assay_lights *lights, uint32_t triangle, 
            (area * fabs(cos_light));
 }
 
-double assay_lights_pdf_infinite(const assay_lights *lights, assay_vec3 direction)
+double assay_lights_pdf_infinite(const assay_lights *lights, const assay_receiver *receiver,
+                                 assay_vec3 direction)
 {
     if (!lights->has_infinite) {
         return 0.0;
@@ -330,7 +341,7 @@ double assay_lights_pdf_infinite(const assay_lights *lights, assay_vec3 directio
     const size_t last   = (size_t)lights->emitter_count + lights->scene->punctual_count;
     const double inside = lights->scene->environment
                               ? assay_environment_pdf(lights->scene->environment, direction)
-                              : 0.25 * ASSAY_INV_PI;
+                              : background_pdf(receiver);
     return assay_distribution1_probability(lights->choice, last) * inside;
 }
 

@@ -2,7 +2,7 @@
  *
  * One light is drawn with a probability proportional to its power: an emissive triangle, a punctual
  * light, or the environment.  Drawing is then by area on a triangle, by luminance on an environment
- * map, uniform over the sphere of a constant background. */
+ * map, and of a constant background uniform over the directions that the receiver can use. */
 #ifndef ASSAY_TRACE_LIGHTS_H
 #define ASSAY_TRACE_LIGHTS_H
 
@@ -33,10 +33,17 @@ typedef struct {
     bool delta;           /* punctual: no other technique can find it                         */
 } assay_light_sample;
 
-/* Draws a light as seen from a point (m).  delta_only: among punctual lights alone.
+/* Who is lit. */
+typedef struct {
+    assay_vec3 point;  /* m                                                                     */
+    assay_vec3 normal; /* unit: what comes from behind is of no use; 0 0 0: everything is       */
+} assay_receiver;
+
+/* Draws a light as seen from a receiver.  delta_only: among punctual lights alone.
  * False: nothing arrives (no light, behind a one-sided emitter, out of range). */
-bool assay_lights_sample(const assay_lights *lights, assay_vec3 point, bool delta_only,
-                         double u_choice, double u1, double u2, assay_light_sample *sample_out);
+bool assay_lights_sample(const assay_lights *lights, const assay_receiver *receiver,
+                         bool delta_only, double u_choice, double u1, double u2,
+                         assay_light_sample *sample_out);
 
 /* Density (1/sr) with which assay_lights_sample draws the direction to a point on an emissive
  * triangle at `distance` whose geometric normal makes cosine |cos_light|; 0 for a triangle that is
@@ -44,8 +51,9 @@ bool assay_lights_sample(const assay_lights *lights, assay_vec3 point, bool delt
 double assay_lights_pdf_triangle(const assay_lights *lights, uint32_t triangle, double distance,
                                  double cos_light);
 
-/* The same for a direction that leaves the scene. */
-double assay_lights_pdf_infinite(const assay_lights *lights, assay_vec3 direction);
+/* The same for a direction that leaves the scene, and that the receiver can use. */
+double assay_lights_pdf_infinite(const assay_lights *lights, const assay_receiver *receiver,
+                                 assay_vec3 direction);
 
 /* Radiance from outside the scene along a unit direction. */
 assay_rgb assay_lights_infinite_radiance(const assay_lights *lights, assay_vec3 direction);

@@ -59,17 +59,28 @@ static bool sides_agree(const assay_vertex *vertex, assay_vec3 wi, bool transmit
     return crosses == transmitted;
 }
 
+/* The vertex as lights see it. */
+static assay_receiver receiver_of(const assay_vertex *vertex)
+{
+    assay_receiver receiver = {.point = vertex->surface.position};
+    if (!assay_bsdf_transmits(&vertex->bsdf)) {
+        receiver.normal = vertex->front ? vertex->surface.ng : vec3_negate(vertex->surface.ng);
+    }
+    return receiver;
+}
+
 /* Light that arrives at the vertex straight from a light. */
 static void sample_light(path_walk *walk, const assay_vertex *vertex, int bounce)
 {
-    const double       u_choice   = assay_random_next(walk->random);
-    const double       u1         = assay_random_next(walk->random);
-    const double       u2         = assay_random_next(walk->random);
-    const bool         delta_only = walk->settings->estimator == ASSAY_ESTIMATOR_BSDF;
-    const assay_vec3   position   = vertex->surface.position;
-    assay_light_sample light;
+    const double         u_choice   = assay_random_next(walk->random);
+    const double         u1         = assay_random_next(walk->random);
+    const double         u2         = assay_random_next(walk->random);
+    const bool           delta_only = walk->settings->estimator == ASSAY_ESTIMATOR_BSDF;
+    const assay_receiver receiver   = receiver_of(vertex);
+    assay_light_sample   light;
     if (assay_bsdf_is_specular(&vertex->bsdf) ||
-        !assay_lights_sample(walk->world->lights, position, delta_only, u_choice, u1, u2, &light)) {
+        !assay_lights_sample(walk->world->lights, &receiver, delta_only, u_choice, u1, u2,
+                             &light)) {
         return;
     }
     const assay_vec3 wi = frame3_to_local(&vertex->frame, light.direction);
@@ -81,11 +92,12 @@ static void sample_light(path_walk *walk, const assay_vertex *vertex, int bounce
         return;
     }
     const assay_vec3 origin =
-        assay_world_offset(walk->world, position, vertex->surface.ng, light.direction);
-    const assay_vec3 along =
-        light.infinite ? light.direction : vec3_sub(vec3_add(position, light.to_light), origin);
-    const double clear = assay_world_transmittance(
-        walk->world, origin, along, light.infinite ? INFINITY : SHADOW_END, &walk->counts->shadow);
+        assay_world_offset(walk->world, receiver.point, vertex->surface.ng, light.direction);
+    const assay_vec3 along = light.infinite
+                                 ? light.direction
+                                 : vec3_sub(vec3_add(receiver.point, light.to_light), origin);
+    const double     clear = assay_world_transmittance(
+            walk->world, origin, along, light.infinite ? INFINITY : SHADOW_END, &walk->counts->shadow);
     if (clear <= 0.0) {
         return;
     }
@@ -171,9 +183,11 @@ static bool follow(path_walk *walk, assay_vertex *vertex, int bounce)
     assay_hit hit;
     if (!assay_world_closest(walk->world, origin, direction, false, walk->random,
                              &walk->counts->scatter, &hit)) {
-        const double    pdf_light = assay_lights_pdf_infinite(walk->world->lights, direction);
-        const assay_rgb radiance  = assay_lights_infinite_radiance(walk->world->lights, direction);
-        walk->throughput          = rgb_mul(walk->throughput, absorption(walk->medium, INFINITY));
+        const assay_receiver receiver = receiver_of(vertex);
+        const double         pdf_light =
+            assay_lights_pdf_infinite(walk->world->lights, &receiver, direction);
+        const assay_rgb radiance = assay_lights_infinite_radiance(walk->world->lights, direction);
+        walk->throughput         = rgb_mul(walk->throughput, absorption(walk->medium, INFINITY));
         add_light(walk, bounce, rgb_scale(radiance, emission_weight(walk, &sample, pdf_light)));
         return false;
     }

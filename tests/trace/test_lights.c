@@ -33,23 +33,23 @@ static assay_scene *two_squares(assay_context *context, double sky)
 
 /* Mean over samples of radiance * cosine / pdf is the irradiance: closed forms of both squares, and
  * pi for the sky (no shadows are asked for, so the squares do not hide it). */
-static void sampling_measures_irradiance(void **state)
+static void sampling_measures_irradiance_of(assay_vec3 normal)
 {
-    (void)state;
     enum { N = 200000 };
     assay_context *context = measure_context(1);
     assay_scene   *scene   = two_squares(context, 0.5);
     assay_lights  *lights  = NULL;
     assert_int_equal(assay_lights_create(scene, &lights), ASSAY_OK);
-    const assay_vec3 p = vec3(0.5, 0, 0.5), n = vec3(0, 1, 0);
-    assay_random     random = assay_random_start(0, ASSAY_STAGE_TEST, 0, 0);
-    double           sum = 0.0, squares = 0.0;
+    const assay_vec3     p = vec3(0.5, 0, 0.5), n = vec3(0, 1, 0);
+    const assay_receiver receiver = {p, normal};
+    assay_random         random   = assay_random_start(0, ASSAY_STAGE_TEST, 0, 0);
+    double               sum = 0.0, squares = 0.0;
     for (int i = 0; i < N; i++) {
         const double u = assay_random_next(&random), u1 = assay_random_next(&random),
                      u2 = assay_random_next(&random);
         assay_light_sample s;
         double             value = 0.0;
-        if (assay_lights_sample(lights, p, false, u, u1, u2, &s)) {
+        if (assay_lights_sample(lights, &receiver, false, u, u1, u2, &s)) {
             const double cosine = vec3_dot(s.direction, n);
             value               = cosine > 0.0 ? s.radiance.r * cosine / s.pdf : 0.0;
             assert_true(fabs(vec3_length(s.direction) - 1.0) < 1e-12);
@@ -67,30 +67,38 @@ static void sampling_measures_irradiance(void **state)
     assay_context_destroy(context);
 }
 
-/* The density of a direction, asked the other way round, is the one it was drawn with. */
-static void densities_agree(void **state)
+/* With the receiver's normal, and for one that light reaches from everywhere. */
+static void sampling_measures_irradiance(void **state)
 {
     (void)state;
+    sampling_measures_irradiance_of(vec3(0, 1, 0));
+    sampling_measures_irradiance_of(vec3(0, 0, 0));
+}
+
+/* The density of a direction, asked the other way round, is the one it was drawn with. */
+static void densities_agree_for(assay_vec3 normal)
+{
     assay_context *context = measure_context(1);
     assay_scene   *scene   = two_squares(context, 0.05);
     assay_world   *world   = NULL;
     assert_int_equal(assay_world_create(scene, &world), ASSAY_OK);
-    const assay_vec3 p       = vec3(0.5, 0, 0.5);
-    assay_random     random  = assay_random_start(1, ASSAY_STAGE_TEST, 0, 0);
-    int              on_tree = 0, at_sky = 0;
+    const assay_receiver receiver = {vec3(0.5, 0, 0.5), normal};
+    assay_random         random   = assay_random_start(1, ASSAY_STAGE_TEST, 0, 0);
+    int                  on_tree = 0, at_sky = 0;
     for (int i = 0; i < 2000; i++) {
         const double u = assay_random_next(&random), u1 = assay_random_next(&random),
                      u2 = assay_random_next(&random);
         assay_light_sample s;
-        if (!assay_lights_sample(world->lights, p, false, u, u1, u2, &s)) {
+        if (!assay_lights_sample(world->lights, &receiver, false, u, u1, u2, &s)) {
             continue;
         }
         if (s.infinite) {
             at_sky++;
-            assert_true(s.pdf == assay_lights_pdf_infinite(world->lights, s.direction));
+            assert_true(s.pdf == assay_lights_pdf_infinite(world->lights, &receiver, s.direction));
+            assert_true(vec3_dot(s.direction, normal) >= 0.0);
             continue;
         }
-        const assay_ray ray = assay_ray_start(p, s.direction, INFINITY);
+        const assay_ray ray = assay_ray_start(receiver.point, s.direction, INFINITY);
         assay_hit       hit;
         assert_true(assay_bvh_closest(world->bvh, &ray, &hit));
         const double pdf =
@@ -106,6 +114,13 @@ static void densities_agree(void **state)
     assay_context_destroy(context);
 }
 
+static void densities_agree(void **state)
+{
+    (void)state;
+    densities_agree_for(vec3(0, 1, 0));
+    densities_agree_for(vec3(0, 0, 0));
+}
+
 /* Choice is proportional to power: pi A L of the squares (100 * 0.01 against 1 * 6). */
 static void choice_is_by_power(void **state)
 {
@@ -119,9 +134,10 @@ static void choice_is_by_power(void **state)
     int          small  = 0;
     for (int i = 0; i < N; i++) {
         const double u = assay_random_next(&random), u1 = assay_random_next(&random),
-                     u2 = assay_random_next(&random);
-        assay_light_sample s;
-        assert_true(assay_lights_sample(lights, vec3(0, 0, 0), false, u, u1, u2, &s));
+                     u2               = assay_random_next(&random);
+        const assay_receiver receiver = {vec3(0, 0, 0), vec3(0, 0, 0)};
+        assay_light_sample   s;
+        assert_true(assay_lights_sample(lights, &receiver, false, u, u1, u2, &s));
         small += s.radiance.r > 50.0;
     }
     const double   p = 1.0 / 7.0;
@@ -141,10 +157,11 @@ static void no_light_at_all(void **state)
     assay_scene  *scene  = scene_builder_load(b, context, NULL);
     assay_lights *lights = NULL;
     assert_int_equal(assay_lights_create(scene, &lights), ASSAY_OK);
-    assay_light_sample s;
-    assert_false(assay_lights_sample(lights, vec3(0, 0, 0), false, 0.5, 0.5, 0.5, &s));
-    assert_false(assay_lights_sample(lights, vec3(0, 0, 0), true, 0.5, 0.5, 0.5, &s));
-    assert_true(assay_lights_pdf_infinite(lights, vec3(0, 1, 0)) == 0.0);
+    const assay_receiver receiver = {vec3(0, 0, 0), vec3(0, 0, 0)};
+    assay_light_sample   s;
+    assert_false(assay_lights_sample(lights, &receiver, false, 0.5, 0.5, 0.5, &s));
+    assert_false(assay_lights_sample(lights, &receiver, true, 0.5, 0.5, 0.5, &s));
+    assert_true(assay_lights_pdf_infinite(lights, &receiver, vec3(0, 1, 0)) == 0.0);
     assert_true(assay_lights_pdf_triangle(lights, 0, 1.0, 1.0) == 0.0);
     assay_lights_destroy(lights);
     assay_lights_destroy(NULL);
