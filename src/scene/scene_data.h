@@ -209,4 +209,8 @@ void assay_scene_warn(assay_scene *scene, const char *format, ...)
 void assay_texture_sample(const assay_scene *scene, const assay_texture_ref *ref,
                           const double uv[2], bool srgb, double rgba_out[4]);
 
+/* Sends for the texel at uv, so that it is near when it is sampled; ref has a texture. */
+void assay_texture_prefetch(const assay_scene *scene, const assay_texture_ref *ref,
+                            const double uv[2]);
+
 #endif

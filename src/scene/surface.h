@@ -28,6 +28,9 @@ void assay_surface_at(const assay_scene *scene, uint32_t triangle, double u, dou
 void assay_triangle_geometry(const assay_scene *scene, uint32_t triangle, assay_vec3 *ng_out,
                              double *area_out);
 
+/* Sends for the texels of the base colour, which are mostly far away in memory. */
+void assay_surface_prefetch(const assay_scene *scene, const assay_surface *surface);
+
 /* Base colour (factor * texture * COLOR_0), linear, clamped to [0, 1]; coverage after the
  * material's alpha mode: 1 where opaque, 0 or 1 for MASK, [0, 1] for BLEND.  Of
  * ASSAY_MATERIAL_LAMBERT the coverage is 1, whatever the alpha. */

@@ -17,6 +17,14 @@ static inline void look_up(const assay_scene *scene, const assay_texture_ref *re
     }
 }
 
+void assay_surface_prefetch(const assay_scene *scene, const assay_surface *surface)
+{
+    const assay_texture_ref *ref = &scene->materials[surface->material].base_color_texture;
+    if (ref->texture != ASSAY_NONE) {
+        assay_texture_prefetch(scene, ref, surface->uv[ref->texcoord & 1u]);
+    }
+}
+
 void assay_surface_base_color(const assay_scene *scene, const assay_surface *surface,
                               assay_rgb *color_out, double *coverage_out)
 {

@@ -85,6 +85,32 @@ static inline void load_texel(const assay_texture_image *image, uint32_t x, uint
 
 static inline double mix(double a, double b, double t) { return a + t * (b - a); }
 
+/* Where uv lies in the texture, both coordinates wrapped to [0, 1]. */
+typedef struct {
+    double s, t;
+} texture_point;
+
+static inline texture_point texture_point_at(const assay_texture     *texture,
+                                             const assay_texture_ref *ref, const double uv[2])
+{
+    const double u = finite_or_zero(uv[0]), v = finite_or_zero(uv[1]);
+    const double(*m)[3] = ref->uv_matrix;
+    return (texture_point){
+        wrap_coordinate(finite_or_zero(m[0][0] * u + m[0][1] * v + m[0][2]), texture->wrap_u),
+        wrap_coordinate(finite_or_zero(m[1][0] * u + m[1][1] * v + m[1][2]), texture->wrap_v)};
+}
+
+void assay_texture_prefetch(const assay_scene *scene, const assay_texture_ref *ref,
+                            const double uv[2])
+{
+    const assay_texture       *texture = &scene->textures[ref->texture];
+    const assay_texture_image *image   = &scene->images[texture->image];
+    const texture_point        p       = texture_point_at(texture, ref, uv);
+    const size_t               at      = assay_texel_offset(image, nearest_texel(p.s, image->width),
+                                                            nearest_texel(p.t, image->height));
+    __builtin_prefetch((const char *)image->texels + at * (image->bits / 8));
+}
+
 void assay_texture_sample(const assay_scene *scene, const assay_texture_ref *ref,
                           const double uv[2], bool srgb, double rgba_out[4])
 {
@@ -94,19 +120,14 @@ void assay_texture_sample(const assay_scene *scene, const assay_texture_ref *ref
     }
     const assay_texture       *texture = &scene->textures[ref->texture];
     const assay_texture_image *image   = &scene->images[texture->image];
-    const double               u = finite_or_zero(uv[0]), v = finite_or_zero(uv[1]);
-    const double(*m)[3] = ref->uv_matrix;
-    const double s =
-        wrap_coordinate(finite_or_zero(m[0][0] * u + m[0][1] * v + m[0][2]), texture->wrap_u);
-    const double t =
-        wrap_coordinate(finite_or_zero(m[1][0] * u + m[1][1] * v + m[1][2]), texture->wrap_v);
+    const texture_point        p       = texture_point_at(texture, ref, uv);
     if (texture->nearest) {
-        load_texel(image, nearest_texel(s, image->width), nearest_texel(t, image->height), srgb,
+        load_texel(image, nearest_texel(p.s, image->width), nearest_texel(p.t, image->height), srgb,
                    rgba_out);
         return;
     }
-    const texel_pair x = enclosing_texels(s, image->width, texture->wrap_u);
-    const texel_pair y = enclosing_texels(t, image->height, texture->wrap_v);
+    const texel_pair x = enclosing_texels(p.s, image->width, texture->wrap_u);
+    const texel_pair y = enclosing_texels(p.t, image->height, texture->wrap_v);
     double           corner[4][4];
     load_texel(image, x.low, y.low, srgb, corner[0]);
     load_texel(image, x.high, y.low, srgb, corner[1]);

@@ -126,11 +126,6 @@ bool assay_bsdf_is_specular(const assay_bsdf *bsdf)
                                                         : is_black(bsdf);
 }
 
-bool assay_bsdf_transmits(const assay_bsdf *bsdf)
-{
-    return bsdf->model == ASSAY_BSDF_METALLIC_ROUGHNESS && bsdf->transmission > 0.0;
-}
-
 assay_rgb assay_bsdf_albedo(const assay_bsdf *bsdf)
 {
     if (bsdf->model == ASSAY_BSDF_BLACK) {

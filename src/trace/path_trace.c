@@ -63,52 +63,57 @@ static bool sides_agree(const assay_vertex *vertex, assay_vec3 wi, bool transmit
 static assay_receiver receiver_of(const assay_vertex *vertex)
 {
     assay_receiver receiver = {.point = vertex->surface.position};
-    if (!assay_bsdf_transmits(&vertex->bsdf)) {
+    if (!vertex->transmits) {
         receiver.normal = vertex->front ? vertex->surface.ng : vec3_negate(vertex->surface.ng);
     }
     return receiver;
 }
 
-/* Light that arrives at the vertex straight from a light. */
-static void sample_light(path_walk *walk, const assay_vertex *vertex, int bounce)
+/* Draws a light for the vertex, which needs no BSDF yet. */
+static bool draw_light(path_walk *walk, const assay_vertex *vertex, assay_light_sample *light_out)
 {
     const double         u_choice   = assay_random_next(walk->random);
     const double         u1         = assay_random_next(walk->random);
     const double         u2         = assay_random_next(walk->random);
     const bool           delta_only = walk->settings->estimator == ASSAY_ESTIMATOR_BSDF;
     const assay_receiver receiver   = receiver_of(vertex);
-    assay_light_sample   light;
-    if (assay_bsdf_is_specular(&vertex->bsdf) ||
-        !assay_lights_sample(walk->world->lights, &receiver, delta_only, u_choice, u1, u2,
-                             &light)) {
+    return assay_lights_sample(walk->world->lights, &receiver, delta_only, u_choice, u1, u2,
+                               light_out);
+}
+
+/* What the vertex scatters of the light that was drawn. */
+static void add_drawn_light(path_walk *walk, const assay_vertex *vertex, int bounce,
+                            const assay_light_sample *light)
+{
+    if (assay_bsdf_is_specular(&vertex->bsdf)) {
         return;
     }
-    const assay_vec3 wi = frame3_to_local(&vertex->frame, light.direction);
-    if (!sides_agree(vertex, light.direction, wi.z * vertex->wo_local.z < 0.0)) {
+    const assay_vec3 wi = frame3_to_local(&vertex->frame, light->direction);
+    if (!sides_agree(vertex, light->direction, wi.z * vertex->wo_local.z < 0.0)) {
         return;
     }
     const assay_bsdf_value f = assay_bsdf_evaluate(&vertex->bsdf, vertex->wo_local, wi);
     if (rgb_is_black(f.value)) {
         return;
     }
-    const assay_vec3 origin =
-        assay_world_offset(walk->world, receiver.point, vertex->surface.ng, light.direction);
-    const assay_vec3 along = light.infinite
-                                 ? light.direction
-                                 : vec3_sub(vec3_add(receiver.point, light.to_light), origin);
-    const double     clear = assay_world_transmittance(
-            walk->world, origin, along, light.infinite ? INFINITY : SHADOW_END, &walk->counts->shadow);
+    const assay_vec3 origin = assay_world_offset(walk->world, vertex->surface.position,
+                                                 vertex->surface.ng, light->direction);
+    const assay_vec3 along =
+        light->infinite ? light->direction
+                        : vec3_sub(vec3_add(vertex->surface.position, light->to_light), origin);
+    const double clear = assay_world_transmittance(
+        walk->world, origin, along, light->infinite ? INFINITY : SHADOW_END, &walk->counts->shadow);
     if (clear <= 0.0) {
         return;
     }
-    double weight = clear / light.pdf;
-    if (!light.delta && walk->settings->estimator == ASSAY_ESTIMATOR_MIS) {
-        weight *= power_weight(light.pdf, f.pdf);
+    double weight = clear / light->pdf;
+    if (!light->delta && walk->settings->estimator == ASSAY_ESTIMATOR_MIS) {
+        weight *= power_weight(light->pdf, f.pdf);
     }
-    assay_rgb radiance = rgb_scale(rgb_mul(f.value, light.radiance), weight);
+    assay_rgb radiance = rgb_scale(rgb_mul(f.value, light->radiance), weight);
     if (walk->medium) {
         radiance = rgb_mul(
-            radiance, absorption(walk->medium, light.infinite ? INFINITY : vec3_length(along)));
+            radiance, absorption(walk->medium, light->infinite ? INFINITY : vec3_length(along)));
     }
     add_light(walk, bounce, radiance);
 }
@@ -195,7 +200,7 @@ static bool follow(path_walk *walk, assay_vertex *vertex, int bounce)
     if (last && !assay_triangle_emits(walk->world->scene, hit.triangle)) {
         return false;
     }
-    assay_vertex_at(walk->world, &hit, direction, vertex);
+    assay_vertex_place(walk->world, &hit, direction, vertex);
     const assay_rgb emission = emission_of(walk, vertex);
     if (!rgb_is_black(emission)) {
         const double pdf_light = assay_lights_pdf_triangle(walk->world->lights, hit.triangle, hit.t,
@@ -207,10 +212,14 @@ static bool follow(path_walk *walk, assay_vertex *vertex, int bounce)
 
 static void scatter(path_walk *walk, assay_vertex *vertex)
 {
+    const bool draws =
+        walk->settings->estimator != ASSAY_ESTIMATOR_BSDF || walk->world->scene->punctual_count > 0;
     for (int bounce = 1; bounce <= walk->settings->bounces; bounce++) {
-        if (walk->settings->estimator != ASSAY_ESTIMATOR_BSDF ||
-            walk->world->scene->punctual_count > 0) {
-            sample_light(walk, vertex, bounce);
+        assay_light_sample light;
+        const bool         lit = draws && draw_light(walk, vertex, &light);
+        assay_vertex_dress(walk->world, vertex);
+        if (lit) {
+            add_drawn_light(walk, vertex, bounce, &light);
         }
         if (!follow(walk, vertex, bounce)) {
             return;
@@ -247,7 +256,7 @@ assay_path_light assay_path_radiance(const assay_world *world, const assay_path_
         return walk.light;
     }
     assay_vertex vertex;
-    assay_vertex_at(world, &hit, direction, &vertex);
+    assay_vertex_place(world, &hit, direction, &vertex);
     add_light(&walk, 0, assay_surface_emission(world->scene, &vertex.surface, vertex.front));
     scatter(&walk, &vertex);
     return walk.light;

@@ -44,8 +44,8 @@ static assay_bsdf bsdf_at(const assay_scene *scene, const assay_surface *surface
     return bsdf;
 }
 
-void assay_vertex_at(const assay_world *world, const assay_hit *hit, assay_vec3 direction,
-                     assay_vertex *vertex_out)
+void assay_vertex_place(const assay_world *world, const assay_hit *hit, assay_vec3 direction,
+                        assay_vertex *vertex_out)
 {
     assay_vertex *v = vertex_out;
     assay_surface_at(world->scene, hit->triangle, hit->u, hit->v, &v->surface);
@@ -59,7 +59,19 @@ void assay_vertex_at(const assay_world *world, const assay_hit *hit, assay_vec3 
     }
     v->frame    = v->surface.frame;
     v->wo_local = frame3_to_local(&v->frame, v->wo);
-    v->bsdf     = bsdf_at(world->scene, &v->surface);
+
+    const assay_material *material = &world->scene->materials[v->surface.material];
+    v->transmits = material->model == ASSAY_MATERIAL_PBR && material->transmission > 0.0;
+    v->dressed   = false;
+    assay_surface_prefetch(world->scene, &v->surface);
+}
+
+void assay_vertex_dress(const assay_world *world, assay_vertex *vertex)
+{
+    if (!vertex->dressed) {
+        vertex->bsdf    = bsdf_at(world->scene, &vertex->surface);
+        vertex->dressed = true;
+    }
 }
 
 void assay_vertex_receiver(assay_vec3 position, const assay_frame3 *frame, assay_vec3 ng,
@@ -77,4 +89,5 @@ void assay_vertex_receiver(assay_vec3 position, const assay_frame3 *frame, assay
     vertex_out->wo               = frame->z;
     vertex_out->wo_local         = vec3(0.0, 0.0, 1.0);
     vertex_out->front            = true;
+    vertex_out->dressed          = true;
 }

@@ -57,7 +57,8 @@ static bool find_visible(const assay_frame *frame, int x, int y, assay_ray_count
     if (!assay_world_visible(frame->world, origin, direction, &counts->camera, &hit)) {
         return false;
     }
-    assay_vertex_at(frame->world, &hit, direction, vertex_out);
+    assay_vertex_place(frame->world, &hit, direction, vertex_out);
+    assay_vertex_dress(frame->world, vertex_out);
     return true;
 }
 
