@@ -129,8 +129,9 @@ static inline bool try_lanes(bvh_query *q, const bvh_leaf *leaf, const crossings
 }
 
 /* The decision of bvh_decision.c for four triangles at once, by the same operations in the same
- * order.  True when a triangle of the leaf became the best hit. */
-static inline bool try_leaf(walk_state *s, const bvh_leaf *leaf)
+ * order.  True when a triangle of the leaf became the best hit; with `any`, when one could. */
+static inline __attribute__((always_inline)) bool decide_leaf(walk_state *s, const bvh_leaf *leaf,
+                                                              const bool any)
 {
     bvh_query       *q    = &s->query;
     const bvh_shear *r    = &q->shear;
@@ -155,11 +156,21 @@ static inline bool try_leaf(walk_state *s, const bvh_leaf *leaf)
     const unsigned in_range   = d4_and_bits(d4_greater_equal(d4_set1(q->best_t), e.t),
                                             d4_greater_equal(e.t, d4_set1(q->t_after)));
     const unsigned lanes      = enclosing & (in_range | ~consistent);
+    const unsigned inside =
+        d4_and_bits(d4_greater(d4_set1(q->best_t), e.t), d4_greater(e.t, d4_set1(q->t_after)));
+    if (any && (lanes & consistent & inside)) {
+        return true;
+    }
     if (!lanes || !try_lanes(q, leaf, &e, lanes, consistent)) {
         return false;
     }
     set_tau_best(s);
     return true;
+}
+
+static __attribute__((noinline)) bool try_leaf(walk_state *s, const bvh_leaf *leaf)
+{
+    return decide_leaf(s, leaf, false);
 }
 
 /* ---- nodes ---- */
@@ -185,7 +196,7 @@ static inline box_vectors box_vectors_of(const box_ray *r)
 
 /* Mask of the children that the ray may meet up to tau_best, and where it enters each. */
 static inline unsigned meet_children(const box_vectors *r, const bvh_node *node, v8 tau_best,
-                                     float *entry)
+                                     v8 *enter_out)
 {
     v8 near[3], far[3];
     for (int k = 0; k < 3; k++) {
@@ -195,7 +206,7 @@ static inline unsigned meet_children(const box_vectors *r, const bvh_node *node,
     }
     const v8 enter = v8_max(v8_max(near[0], near[1]), v8_max(near[2], r->tau_after));
     const v8 leave = v8_min(v8_min(far[0], far[1]), v8_min(far[2], tau_best));
-    v8_store(entry, enter);
+    *enter_out     = enter;
     return v8_less_equal(enter, leave);
 }
 
@@ -313,10 +324,12 @@ static bool closest(const assay_bvh *bvh, const assay_ray *ray, assay_hit *hit_o
     uint32_t          reference = bvh->root;
     for (;;) {
         if (!(reference & BVH_LEAF_BIT)) {
-            const bvh_node    *node = bvh_node_at(bvh, reference);
-            _Alignas(32) float entry[BVH_WIDTH];
-            const unsigned     mask = meet_children(&boxes, node, tau_best, entry);
+            const bvh_node *node = bvh_node_at(bvh, reference);
+            v8              enter;
+            const unsigned  mask = meet_children(&boxes, node, tau_best, &enter);
             if (mask) {
+                _Alignas(32) float entry[BVH_WIDTH];
+                v8_store(entry, enter);
                 reference = descend(bvh, &top, node, entry, mask);
                 continue;
             }
@@ -342,23 +355,27 @@ static bool occluded(const assay_bvh *bvh, const assay_ray *ray)
     const box_vectors boxes    = box_vectors_of(&s.boxes);
     const v8          tau_best = v8_set1(s.boxes.tau_best);
     uint32_t          stack[BVH_MAX_STACK];
-    uint32_t         *top = stack;
-    *top++                = bvh->root;
-    while (top > stack) {
-        const uint32_t reference = *--top;
-        if (reference & BVH_LEAF_BIT) {
-            if (try_leaf(&s, bvh_leaf_at(bvh, reference))) {
-                return true;
+    uint32_t         *top       = stack;
+    uint32_t          reference = bvh->root;
+    for (;;) {
+        if (!(reference & BVH_LEAF_BIT)) {
+            const bvh_node *node = bvh_node_at(bvh, reference);
+            v8              enter;
+            unsigned        mask = meet_children(&boxes, node, tau_best, &enter);
+            if (mask) {
+                reference = node->child[__builtin_ctz(mask)];
+                for (mask &= mask - 1; mask; mask &= mask - 1) {
+                    *top++ = node->child[__builtin_ctz(mask)];
+                    prefetch(bvh, top[-1]);
+                }
+                continue;
             }
-            continue;
+        } else if (decide_leaf(&s, bvh_leaf_at(bvh, reference), true)) {
+            return true;
         }
-        const bvh_node    *node = bvh_node_at(bvh, reference);
-        _Alignas(32) float entry[BVH_WIDTH];
-        unsigned           mask = meet_children(&boxes, node, tau_best, entry);
-        for (; mask; mask &= mask - 1) {
-            *top++ = node->child[__builtin_ctz(mask)];
-            prefetch(bvh, top[-1]);
+        if (top == stack) {
+            return false;
         }
+        reference = *--top;
     }
-    return false;
 }
