@@ -78,7 +78,8 @@ static lanes_pair multiply_root(lanes x, lanes_pair root, lanes shrink, double s
     const lanes hi    = lanes_coarse(x);
     const lanes lo    = x - hi;
     const lanes exact = hi * root.hi;
-    const lanes rest  = (hi * root.lo + lo * (root.hi + root.lo)) - exact * shrink;
+    const lanes whole = root.hi + root.lo;
+    const lanes rest  = (hi * root.lo + lo * whole) - x * whole * shrink;
     const lanes head  = lanes_coarse(scale * (exact + rest));
     return (lanes_pair){head, (scale * exact - head) + scale * rest};
 }
