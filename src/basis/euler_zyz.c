@@ -49,23 +49,23 @@ static bool is_rotation(const double r[9])
 
 /* X (3 - X' X) / 2, which squares the distance from orthogonality and tends to the orthogonal
  * matrix nearest to X [higham86]. */
-static void orthogonalize_once(dd x[3][3])
+static void orthogonalize_once(double_double x[3][3])
 {
-    dd correction[3][3], y[3][3];
+    double_double correction[3][3], y[3][3];
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
-            dd sum = dd_of(i == j ? -3.0 : 0.0);
+            double_double sum = dd_of(i == j ? -3.0 : 0.0);
             for (int k = 0; k < 3; k++) {
-                sum = dd_add(sum, dd_mul(x[k][i], x[k][j]));
+                sum = dd_add(sum, dd_multiply(x[k][i], x[k][j]));
             }
-            correction[i][j] = dd_scale(sum, -0.5);
+            correction[i][j] = dd_multiply_double(sum, -0.5);
         }
     }
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
             y[i][j] = dd_of(0.0);
             for (int k = 0; k < 3; k++) {
-                y[i][j] = dd_add(y[i][j], dd_mul(x[i][k], correction[k][j]));
+                y[i][j] = dd_add(y[i][j], dd_multiply(x[i][k], correction[k][j]));
             }
         }
     }
@@ -75,7 +75,7 @@ static void orthogonalize_once(dd x[3][3])
 }
 
 /* q: x, y, z, w. */
-static void quaternion_of(dd r[3][3], dd q[4])
+static void quaternion_of(double_double r[3][3], double_double q[4])
 {
     const double trace   = r[0][0].hi + r[1][1].hi + r[2][2].hi;
     int          largest = 3;
@@ -87,36 +87,37 @@ static void quaternion_of(dd r[3][3], dd q[4])
         }
     }
     if (largest == 3) {
-        const dd sum = dd_add(dd_add(r[0][0], r[1][1]), dd_add(r[2][2], dd_of(1.0)));
-        q[3]         = dd_sqrt(sum); /* twice w; the scale is taken out below */
+        const double_double sum = dd_add(dd_add(r[0][0], r[1][1]), dd_add(r[2][2], dd_of(1.0)));
+        q[3]                    = dd_sqrt(sum); /* twice w; the scale is taken out below */
         for (int i = 0; i < 3; i++) {
             const int j = (i + 1) % 3, k = (i + 2) % 3;
-            q[i] = dd_div(dd_sub(r[k][j], r[j][k]), q[3]);
+            q[i] = dd_divide(dd_subtract(r[k][j], r[j][k]), q[3]);
         }
     } else {
-        const int i = largest, j = (i + 1) % 3, k = (i + 2) % 3;
-        const dd  sum = dd_sub(dd_add(r[i][i], dd_of(1.0)), dd_add(r[j][j], r[k][k]));
-        q[i]          = dd_sqrt(sum);
-        q[j]          = dd_div(dd_add(r[i][j], r[j][i]), q[i]);
-        q[k]          = dd_div(dd_add(r[i][k], r[k][i]), q[i]);
-        q[3]          = dd_div(dd_sub(r[k][j], r[j][k]), q[i]);
+        const int           i = largest, j = (i + 1) % 3, k = (i + 2) % 3;
+        const double_double sum =
+            dd_subtract(dd_add(r[i][i], dd_of(1.0)), dd_add(r[j][j], r[k][k]));
+        q[i] = dd_sqrt(sum);
+        q[j] = dd_divide(dd_add(r[i][j], r[j][i]), q[i]);
+        q[k] = dd_divide(dd_add(r[i][k], r[k][i]), q[i]);
+        q[3] = dd_divide(dd_subtract(r[k][j], r[j][k]), q[i]);
     }
     for (int i = 0; i < 4; i++) {
-        q[i] = dd_scale(q[i], 0.5);
+        q[i] = dd_multiply_double(q[i], 0.5);
     }
 }
 
 /* |(a, b)|; (a, b) is scaled to length 1, or made (1, 0) where it is zero. */
-static dd take_length(dd *a, dd *b)
+static double_double take_length(double_double *a, double_double *b)
 {
-    const dd length = dd_sqrt(dd_add(dd_mul(*a, *a), dd_mul(*b, *b)));
+    const double_double length = dd_sqrt(dd_add(dd_multiply(*a, *a), dd_multiply(*b, *b)));
     if (!(length.hi > 0.0)) {
         *a = dd_of(1.0);
         *b = dd_of(0.0);
         return dd_of(0.0);
     }
-    *a = dd_div(*a, length);
-    *b = dd_div(*b, length);
+    *a = dd_divide(*a, length);
+    *b = dd_divide(*b, length);
     return length;
 }
 
@@ -125,7 +126,7 @@ bool assay_euler_zyz_split(const double rotation[9], assay_euler_zyz *split_out)
     if (!is_rotation(rotation)) {
         return false;
     }
-    dd r[3][3], q[4];
+    double_double r[3][3], q[4];
     for (int i = 0; i < 9; i++) {
         r[i / 3][i % 3] = dd_of(rotation[i]);
     }
@@ -134,26 +135,27 @@ bool assay_euler_zyz_split(const double rotation[9], assay_euler_zyz *split_out)
     }
     quaternion_of(r, q);
 
-    dd       a = q[3], ai = q[2], b = q[1], bi = dd_negate(q[0]);
-    const dd c = take_length(&a, &ai), s = take_length(&b, &bi);
-    const dd norm            = dd_sqrt(dd_add(dd_mul(c, c), dd_mul(s, s)));
-    split_out->cos_half_beta = dd_div(c, norm);
-    split_out->sin_half_beta = dd_div(s, norm);
-    split_out->cos_alpha     = dd_sub(dd_mul(a, b), dd_mul(ai, bi));
-    split_out->sin_alpha     = dd_add(dd_mul(a, bi), dd_mul(ai, b));
-    split_out->cos_gamma     = dd_add(dd_mul(a, b), dd_mul(ai, bi));
-    split_out->sin_gamma     = dd_sub(dd_mul(ai, b), dd_mul(a, bi));
+    double_double       a = q[3], ai = q[2], b = q[1], bi = dd_negate(q[0]);
+    const double_double c = take_length(&a, &ai), s = take_length(&b, &bi);
+    const double_double norm = dd_sqrt(dd_add(dd_multiply(c, c), dd_multiply(s, s)));
+    split_out->cos_half_beta = dd_divide(c, norm);
+    split_out->sin_half_beta = dd_divide(s, norm);
+    split_out->cos_alpha     = dd_subtract(dd_multiply(a, b), dd_multiply(ai, bi));
+    split_out->sin_alpha     = dd_add(dd_multiply(a, bi), dd_multiply(ai, b));
+    split_out->cos_gamma     = dd_add(dd_multiply(a, b), dd_multiply(ai, bi));
+    split_out->sin_gamma     = dd_subtract(dd_multiply(ai, b), dd_multiply(a, bi));
     return true;
 }
 
-void assay_angle_multiples(dd cosine, dd sine, int count, double *cosines_out, double *sines_out)
+void assay_angle_multiples(double_double cosine, double_double sine, int count, double *cosines_out,
+                           double *sines_out)
 {
-    dd c = dd_of(1.0), s = dd_of(0.0);
+    double_double c = dd_of(1.0), s = dd_of(0.0);
     for (int m = 0; m < count; m++) {
-        cosines_out[m] = dd_round(c);
-        sines_out[m]   = dd_round(s);
-        const dd next  = dd_sub(dd_mul(c, cosine), dd_mul(s, sine));
-        s              = dd_add(dd_mul(s, cosine), dd_mul(c, sine));
-        c              = next;
+        cosines_out[m]           = dd_round(c);
+        sines_out[m]             = dd_round(s);
+        const double_double next = dd_subtract(dd_multiply(c, cosine), dd_multiply(s, sine));
+        s                        = dd_add(dd_multiply(s, cosine), dd_multiply(c, sine));
+        c                        = next;
     }
 }

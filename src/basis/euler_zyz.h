@@ -10,9 +10,9 @@
  * >= 0.  Where beta is 0 or pi only alpha + gamma or alpha - gamma means anything; the other is
  * then some number. */
 typedef struct {
-    dd cos_alpha, sin_alpha;
-    dd cos_half_beta, sin_half_beta;
-    dd cos_gamma, sin_gamma;
+    double_double cos_alpha, sin_alpha;
+    double_double cos_half_beta, sin_half_beta;
+    double_double cos_gamma, sin_gamma;
 } assay_euler_zyz;
 
 /* Of the rotation nearest to the matrix (row by row; in the sum of squares).  False, nothing
@@ -20,6 +20,7 @@ typedef struct {
 bool assay_euler_zyz_split(const double rotation[9], assay_euler_zyz *split_out);
 
 /* cos(m angle), sin(m angle) for m < count. */
-void assay_angle_multiples(dd cosine, dd sine, int count, double *cosines_out, double *sines_out);
+void assay_angle_multiples(double_double cosine, double_double sine, int count, double *cosines_out,
+                           double *sines_out);
 
 #endif

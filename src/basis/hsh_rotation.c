@@ -110,14 +110,14 @@ static assay_status from_table(const turner *t, int steps, double beta, double *
 
 static assay_euler_zyz turn_about_y(double sin_half, double cos_half)
 {
-    const dd norm =
+    const double_double norm =
         dd_sqrt(dd_add(dd_two_product(sin_half, sin_half), dd_two_product(cos_half, cos_half)));
     /* A negative turn is the positive one between two half turns about z. */
     const double side = sin_half < 0.0 ? -1.0 : 1.0;
     return (assay_euler_zyz){.cos_alpha     = dd_of(side),
                              .sin_alpha     = dd_of(0.0),
-                             .cos_half_beta = dd_div(dd_of(cos_half), norm),
-                             .sin_half_beta = dd_div(dd_of(fabs(sin_half)), norm),
+                             .cos_half_beta = dd_divide(dd_of(cos_half), norm),
+                             .sin_half_beta = dd_divide(dd_of(fabs(sin_half)), norm),
                              .cos_gamma     = dd_of(side),
                              .sin_gamma     = dd_of(0.0)};
 }

@@ -19,53 +19,55 @@
 enum { ORDER = ASSAY_BASIS_MAX_ORDER, DEGREES = 2 * ORDER };
 
 typedef struct {
-    dd     root_factorial[DEGREES]; /* sqrt(k!)                        */
-    dd     cos_power[DEGREES];      /* powers of cos and sin of beta/2 */
-    dd     sin_power[DEGREES];
-    dd     cos_beta;
-    double cos_alpha[ORDER], sin_alpha[ORDER], cos_gamma[ORDER], sin_gamma[ORDER];
+    double_double root_factorial[DEGREES]; /* sqrt(k!)                        */
+    double_double cos_power[DEGREES];      /* powers of cos and sin of beta/2 */
+    double_double sin_power[DEGREES];
+    double_double cos_beta;
+    double        cos_alpha[ORDER], sin_alpha[ORDER], cos_gamma[ORDER], sin_gamma[ORDER];
 } turn;
 
 static turn turn_of(const assay_euler_zyz *split)
 {
-    turn     t;
-    const dd c = split->cos_half_beta, s = split->sin_half_beta;
-    dd       factorial  = dd_of(1.0);
+    turn                t;
+    const double_double c = split->cos_half_beta, s = split->sin_half_beta;
+    double_double       factorial = dd_of(1.0);
     t.root_factorial[0] = t.cos_power[0] = t.sin_power[0] = dd_of(1.0);
     for (int k = 1; k < DEGREES; k++) {
-        factorial           = dd_scale(factorial, k);
+        factorial           = dd_multiply_double(factorial, k);
         t.root_factorial[k] = dd_sqrt(factorial);
-        t.cos_power[k]      = dd_mul(t.cos_power[k - 1], c);
-        t.sin_power[k]      = dd_mul(t.sin_power[k - 1], s);
+        t.cos_power[k]      = dd_multiply(t.cos_power[k - 1], c);
+        t.sin_power[k]      = dd_multiply(t.sin_power[k - 1], s);
     }
-    t.cos_beta = dd_sub(dd_mul(c, c), dd_mul(s, s));
+    t.cos_beta = dd_subtract(dd_multiply(c, c), dd_multiply(s, s));
     assay_angle_multiples(split->cos_alpha, split->sin_alpha, ORDER, t.cos_alpha, t.sin_alpha);
     assay_angle_multiples(split->cos_gamma, split->sin_gamma, ORDER, t.cos_gamma, t.sin_gamma);
     return t;
 }
 
 /* e^l(m, k) for l = m ... order - 1 in e_out[l]; m >= |k|. */
-static void small_d(const turn *t, int order, int m, int k, dd *e_out)
+static void small_d(const turn *t, int order, int m, int k, double_double *e_out)
 {
-    const dd *g     = t->root_factorial;
-    const dd  power = dd_mul(t->sin_power[m - k], t->cos_power[m + k]);
-    const dd  below = dd_of(1.0);
-    dd        p = below, before = dd_of(0.0);
+    const double_double *g     = t->root_factorial;
+    const double_double  power = dd_multiply(t->sin_power[m - k], t->cos_power[m + k]);
+    const double_double  below = dd_of(1.0);
+    double_double        p = below, before = dd_of(0.0);
     for (int l = m; l < order; l++) {
         if (l == m + 1) {
             before = p;
-            p      = dd_sub(dd_scale(t->cos_beta, m + 1), dd_of(k));
+            p      = dd_subtract(dd_multiply_double(t->cos_beta, m + 1), dd_of(k));
         } else if (l > m) {
-            const double a = (2.0 * l - 1.0) * l * (l - 1.0), b = (2.0 * l - 1.0) * m * k;
-            const double c = l * ((l - 1.0) * (l - 1.0) - (double)k * k);
-            const dd     sum =
-                dd_sub(dd_mul(dd_sub(dd_scale(t->cos_beta, a), dd_of(b)), p), dd_scale(before, c));
+            const double        a = (2.0 * l - 1.0) * l * (l - 1.0), b = (2.0 * l - 1.0) * m * k;
+            const double        c   = l * ((l - 1.0) * (l - 1.0) - (double)k * k);
+            const double_double sum = dd_subtract(
+                dd_multiply(dd_subtract(dd_multiply_double(t->cos_beta, a), dd_of(b)), p),
+                dd_multiply_double(before, c));
             const double down = (l - 1.0) * ((double)l * l - (double)m * m);
             before            = p;
-            p                 = dd_div_double(sum, down);
+            p                 = dd_divide_double(sum, down);
         }
-        const dd norm = dd_div(dd_mul(g[l + m], g[l - m]), dd_mul(g[l + k], g[l - k]));
-        e_out[l]      = dd_mul(dd_mul(norm, power), p);
+        const double_double norm =
+            dd_divide(dd_multiply(g[l + m], g[l - m]), dd_multiply(g[l + k], g[l - k]));
+        e_out[l] = dd_multiply(dd_multiply(norm, power), p);
     }
 }
 
@@ -101,19 +103,19 @@ static void write_pair(const target *to, const turn *t, int l, int m, int k, dou
 static void write_band_entries(const target *to, const turn *t, int order, int m, int k,
                                double sign)
 {
-    dd plus[ORDER], minus[ORDER];
+    double_double plus[ORDER], minus[ORDER];
     small_d(t, order, m, k, plus);
     small_d(t, order, m, -k, minus);
-    const double flip = (k & 1) ? -1.0 : 1.0, transposed = ((m - k) & 1) ? -1.0 : 1.0;
-    const dd     root2 = dd_sqrt(dd_of(2.0));
+    const double        flip = (k & 1) ? -1.0 : 1.0, transposed = ((m - k) & 1) ? -1.0 : 1.0;
+    const double_double root2 = dd_sqrt(dd_of(2.0));
     for (int l = m; l < order; l++) {
-        const dd other   = dd_scale(minus[l], flip);
-        double   cosines = 0.0, sines = 0.0;
+        const double_double other   = dd_multiply_double(minus[l], flip);
+        double              cosines = 0.0, sines = 0.0;
         if (k > 0) {
             cosines = sign * dd_round(dd_add(plus[l], other));
-            sines   = sign * dd_round(dd_sub(plus[l], other));
+            sines   = sign * dd_round(dd_subtract(plus[l], other));
         } else {
-            cosines = sign * dd_round(m > 0 ? dd_mul(plus[l], root2) : plus[l]);
+            cosines = sign * dd_round(m > 0 ? dd_multiply(plus[l], root2) : plus[l]);
         }
         write_pair(to, t, l, m, k, cosines, sines);
         if (m != k) {

@@ -35,23 +35,28 @@ static double newton_step(int n, double x)
 /* The zero next to x, with its weight. */
 static void polish(int n, double x, double *node_out, double *weight_out)
 {
-    dd p = dd_of(x), before = dd_of(1.0);
+    double_double p = dd_of(x), before = dd_of(1.0);
     for (int k = 2; k <= n; k++) {
-        const dd a = dd_scale(dd_scale(p, x), 2.0 * k - 1.0), b = dd_scale(before, k - 1.0);
-        before = p;
-        p      = dd_div_double(dd_sub(a, b), k);
+        const double_double a = dd_multiply_double(dd_multiply_double(p, x), 2.0 * k - 1.0),
+                            b = dd_multiply_double(before, k - 1.0);
+        before                = p;
+        p                     = dd_divide_double(dd_subtract(a, b), k);
     }
-    const dd s     = dd_mul(dd_two_sum(1.0, -x), dd_two_sum(1.0, x)); /* 1 - x^2 */
-    const dd slope = dd_div(dd_scale(dd_sub(before, dd_scale(p, x)), n), s);
-    const dd step  = dd_negate(dd_div(p, slope));
+    const double_double s = dd_multiply(dd_two_sum(1.0, -x), dd_two_sum(1.0, x)); /* 1 - x^2 */
+    const double_double slope =
+        dd_divide(dd_multiply_double(dd_subtract(before, dd_multiply_double(p, x)), n), s);
+    const double_double step = dd_negate(dd_divide(p, slope));
 
     /* Both factors of the weight at x + step: P'' from Legendre's equation. */
-    const dd bend =
-        dd_div(dd_sub(dd_scale(slope, 2.0 * x), dd_scale(p, (double)n * ((double)n + 1.0))), s);
-    const dd slope_there = dd_add(slope, dd_mul(bend, step));
-    const dd s_there     = dd_sub(s, dd_scale(step, 2.0 * x));
-    *node_out            = dd_round(dd_add(dd_of(x), step));
-    *weight_out = dd_round(dd_div(dd_of(2.0), dd_mul(s_there, dd_mul(slope_there, slope_there))));
+    const double_double bend =
+        dd_divide(dd_subtract(dd_multiply_double(slope, 2.0 * x),
+                              dd_multiply_double(p, (double)n * ((double)n + 1.0))),
+                  s);
+    const double_double slope_there = dd_add(slope, dd_multiply(bend, step));
+    const double_double s_there     = dd_subtract(s, dd_multiply_double(step, 2.0 * x));
+    *node_out                       = dd_round(dd_add(dd_of(x), step));
+    *weight_out                     = dd_round(
+                            dd_divide(dd_of(2.0), dd_multiply(s_there, dd_multiply(slope_there, slope_there))));
 }
 
 void assay_gauss_legendre(int n, double *nodes_out, double *weights_out)
