@@ -87,22 +87,21 @@ static assay_status from_table(const turner *t, int steps, double beta, double *
         below = steps - 1;
     }
     const double share = place - below, step = 0.5 * ASSAY_PI / steps;
-    const size_t n     = t->count;
-    double      *above = allocate_matrix(t, n, n);
-    if (!above) {
-        return no_memory(t);
-    }
-    assay_status status = exact(t, below * step, matrix_out);
-    status              = status ? status : exact(t, (below + 1.0) * step, above);
+    const size_t n   = t->count;
+    double      *low = allocate_matrix(t, n, n), *high = allocate_matrix(t, n, n);
+    assay_status status = low && high ? ASSAY_OK : no_memory(t);
+    status              = status ? status : exact(t, below * step, low);
+    status              = status ? status : exact(t, (below + 1.0) * step, high);
     if (!status) {
         for (size_t i = 0; i < n * n; i++) {
-            matrix_out[i] = (1.0 - share) * matrix_out[i] + share * above[i];
+            matrix_out[i] = (1.0 - share) * low[i] + share * high[i];
         }
         if (beta < 0.0) {
             transpose(n, matrix_out);
         }
     }
-    assay_release(t->context, above);
+    assay_release(t->context, low);
+    assay_release(t->context, high);
     return status;
 }
 
