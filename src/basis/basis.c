@@ -91,7 +91,7 @@ static assay_status check_request(assay_context *context, assay_basis_kind kind,
 /* Orders and indices; returns the number of steps. */
 static size_t arrange(assay_basis *basis)
 {
-    const int stride = basis_stride(basis->kind);
+    const int stride = basis->kind == ASSAY_BASIS_ZERNIKE ? 2 : 1;
     const int n      = basis->order;
     size_t    steps  = 0;
     for (int m = 0; m < n; m++) {
@@ -109,15 +109,16 @@ static size_t arrange(assay_basis *basis)
     return steps;
 }
 
-static void place_steps(assay_basis *basis, basis_step *step)
+static void place_steps(assay_basis *basis)
 {
-    const int stride = basis_stride(basis->kind);
+    basis_step *step   = basis->step;
+    const int   stride = basis->kind == ASSAY_BASIS_ZERNIKE ? 2 : 1;
     for (int m = 0; m < basis->order; m++) {
         for (int k = 0; k < basis->steps[m]; k++, step++) {
             const int  l    = m + stride * k;
             const bool here = !basis_is_even(basis->kind) || (l + m) % 2 == 0;
-            step->plus      = here ? (int)basis_index(basis, l, m) : -1;
-            step->minus     = here && m > 0 ? (int)basis_index(basis, l, -m) : -1;
+            step->plus      = here ? (short)basis_index(basis, l, m) : -1;
+            step->minus     = here && m > 0 ? (short)basis_index(basis, l, -m) : -1;
         }
     }
 }
@@ -137,16 +138,13 @@ assay_status assay_basis_create(assay_context *context, assay_basis_kind kind, i
     basis->kind        = kind;
     basis->order       = order;
     basis->convention  = convention;
-    basis->symmetric   = kind == ASSAY_BASIS_HSH || basis_is_spherical(kind);
     const size_t steps = arrange(basis);
-    for (int zone = 0; zone < BASIS_ZONES; zone++) {
-        basis->zone[zone] = assay_allocate(context, steps, sizeof(basis_step));
-        if (!basis->zone[zone]) {
-            assay_basis_destroy(basis);
-            return assay_fail_memory(context, "a basis");
-        }
-        place_steps(basis, basis->zone[zone]);
+    basis->step        = assay_allocate(context, steps, sizeof(basis_step));
+    if (!basis->step) {
+        assay_basis_destroy(basis);
+        return assay_fail_memory(context, "a basis");
     }
+    place_steps(basis);
     basis_constants(basis);
     *basis_out = basis;
     return ASSAY_OK;
@@ -157,9 +155,7 @@ void assay_basis_destroy(assay_basis *basis)
     if (!basis) {
         return;
     }
-    for (int zone = 0; zone < BASIS_ZONES; zone++) {
-        assay_release(basis->context, basis->zone[zone]);
-    }
+    assay_release(basis->context, basis->step);
     assay_release(basis->context, basis);
 }
 

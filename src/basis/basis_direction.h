@@ -9,22 +9,18 @@ typedef struct {
     lanes x, y, z;
 } lanes_direction;
 
-/* x = hi + lo; hi is a multiple of 2^-26. */
+/* hi + lo: hi is a multiple of 2^-26, lo some 2^-27 with the relative error of a double. */
 typedef struct {
     lanes hi, lo;
 } lanes_pair;
 
-/* Of d / |d|, for a whole zone of directions. */
+/* What d / |d| amounts to. */
 typedef struct {
-    lanes      argument; /* zone with ends: 1 - |t|; middle: t                     */
-    lanes      parity;   /* -1 where |t| stands for -t, else 1                     */
-    lanes      weight;   /* factor of all functions                                */
-    lanes_pair re, im;   /* b                                                      */
+    lanes_pair t;
+    lanes_pair re, im; /* b                       */
+    lanes      weight; /* factor of all functions */
 } basis_place;
 
-/* Zone of a direction that basis_check_direction lets pass. */
-int basis_zone(const assay_basis *basis, double z);
-
-basis_place basis_locate(const assay_basis *basis, int zone, lanes_direction d);
+basis_place basis_locate(assay_basis_kind kind, lanes_direction d);
 
 #endif

@@ -1,29 +1,29 @@
 /* basis_evaluate.c - all functions at one direction, or at many.
  *
- * Invariant: one direction and many go the same way, two lanes at a time, so their bits are the
- * same.
+ * Invariant: one direction goes the way of many, so their bits are the same.
  *
- * Powers of b are carried as a multiple of 2^-26 and a rest: the products of the multiples and
- * their difference are exact, so the error of a step is some 2^-78 and does not add up.  Near an
- * end of t the recurrence is for differences (Reinsch's form [deuflhard76]): the plain one loses
- * l^2 units there. */
+ * Recurrences run in two parts.  The heads are multiples of 2^-26, so their products and the sum of
+ * those are exact; the sum is cut to 2^-26 again, and what is cut off drives the rest, which obeys
+ * the same recurrence in plain double.  A rest is some 2^-26 l^2 at most and its rounding 2^-53 of
+ * that: nothing that a double could show, even where a plain recurrence loses l^2 units. */
+#include <stdint.h>
+
 #include "basis/basis_direction.h"
 
-typedef struct {
-    lanes_pair re, im;
-} lanes_power;
-
-/* power b */
-static inline lanes_power multiply_base(lanes_power p, const basis_place *b, lanes re, lanes im)
+/* p b.  whole: b in one number. */
+static inline void multiply_base(lanes_pair *p_re, lanes_pair *p_im, const basis_place *b, lanes re,
+                                 lanes im)
 {
-    const lanes re_exact = p.re.hi * b->re.hi - p.im.hi * b->im.hi;
-    const lanes im_exact = p.re.hi * b->im.hi + p.im.hi * b->re.hi;
-    const lanes re_rest = (p.re.hi * b->re.lo + p.re.lo * re) - (p.im.hi * b->im.lo + p.im.lo * im);
-    const lanes im_rest = (p.re.hi * b->im.lo + p.re.lo * im) + (p.im.hi * b->re.lo + p.im.lo * re);
-    const lanes re_head = lanes_coarse(re_exact + re_rest);
-    const lanes im_head = lanes_coarse(im_exact + im_rest);
-    return (lanes_power){{re_head, (re_exact - re_head) + re_rest},
-                         {im_head, (im_exact - im_head) + im_rest}};
+    const lanes_pair u        = *p_re;
+    const lanes_pair v        = *p_im;
+    const lanes      exact_re = u.hi * b->re.hi - v.hi * b->im.hi;
+    const lanes      exact_im = u.hi * b->im.hi + v.hi * b->re.hi;
+    const lanes      rest_re  = (u.hi * b->re.lo + u.lo * re) - (v.hi * b->im.lo + v.lo * im);
+    const lanes      rest_im  = (u.hi * b->im.lo + u.lo * im) + (v.hi * b->re.lo + v.lo * re);
+    p_re->hi                  = lanes_coarse(exact_re);
+    p_im->hi                  = lanes_coarse(exact_im);
+    p_re->lo                  = (exact_re - p_re->hi) + rest_re;
+    p_im->lo                  = (exact_im - p_im->hi) + rest_im;
 }
 
 static inline void store(double *const row[LANES], int index, lanes value)
@@ -33,89 +33,83 @@ static inline void store(double *const row[LANES], int index, lanes value)
     }
 }
 
-static inline void store_step(double *const row[LANES], const basis_step *step, lanes q, lanes re,
-                              lanes im)
+/* All degrees of one m.  t: half, once and twice t, as step->exponent asks. */
+static inline void walk(const basis_step *step, int steps, bool symmetric, const lanes_pair t[3],
+                        lanes re, lanes im, double *const row[LANES])
 {
-    const lanes value = step->scale * q;
-    if (step->plus >= 0) {
-        store(row, step->plus, value * re);
-    }
-    if (step->minus >= 0) {
-        store(row, step->minus, value * im);
-    }
-}
-
-/* All degrees of one m, near an end: argument is 1 - |t|. */
-static inline void walk_end(const basis_step *step, int steps, lanes argument, lanes parity,
-                            lanes re, lanes im, double *const row[LANES])
-{
-    lanes q = lanes_of(1.0), difference = lanes_of(0.0);
-    lanes next_re = re * parity, next_im = im * parity;
+    lanes_pair p = {lanes_of(1.0), lanes_of(0.0)}, before = {lanes_of(0.0), lanes_of(0.0)};
     for (int k = 0; k < steps; k++, step++) {
-        store_step(row, step, q, re, im);
-        difference    = step->c * difference - (step->a * argument) * q;
-        q             = q + difference;
-        const lanes r = re;
-        const lanes i = im;
-        re            = next_re;
-        im            = next_im;
-        next_re       = r;
-        next_im       = i;
+        const lanes value = step->scale * (p.hi + p.lo);
+        if (step->plus >= 0) {
+            store(row, step->plus, value * re);
+        }
+        if (step->minus >= 0) {
+            store(row, step->minus, value * im);
+        }
+        lanes_pair x = t[step->exponent + 1];
+        if (!symmetric) {
+            const double power = step->exponent < 0 ? 0.5 : step->exponent + 1.0;
+            x.hi -= power * step->b_hi;
+            x.lo -= power * step->b_lo;
+        }
+        const lanes exact = x.hi * p.hi - step->g_hi * before.hi;
+        const lanes rest  = ((x.hi + x.lo) * p.lo + x.lo * p.hi) -
+                           ((step->g_hi + step->g_lo) * before.lo + step->g_lo * before.hi);
+        before = p;
+        p.hi   = lanes_coarse(exact);
+        p.lo   = (exact - p.hi) + rest;
     }
 }
 
-/* The same in the middle: argument is t, and alpha = beta. */
-static inline void walk_middle(const basis_step *step, int steps, lanes argument, lanes re,
-                               lanes im, double *const row[LANES])
+static inline lanes_pair scaled(lanes_pair a, double factor)
 {
-    lanes q = lanes_of(1.0), before = lanes_of(0.0);
-    for (int k = 0; k < steps; k++, step++) {
-        store_step(row, step, q, re, im);
-        const lanes next = (step->a * argument) * q - step->c * before;
-        before           = q;
-        q                = next;
-    }
+    return (lanes_pair){factor * a.hi, factor * a.lo};
 }
 
-static void evaluate_lanes(const assay_basis *basis, int zone, const lanes_direction *direction,
+static void evaluate_lanes(const assay_basis *basis, const lanes_direction *direction,
                            double *const row[LANES])
 {
-    const basis_place place  = basis_locate(basis, zone, *direction);
-    const bool        middle = basis->symmetric && zone == 1;
-    const lanes       re     = place.re.hi + place.re.lo;
-    const lanes       im     = place.im.hi + place.im.lo;
-    const basis_step *step   = basis->zone[zone];
-    lanes_power       power  = {.re = {.hi = lanes_of(1.0)}};
+    const basis_place place     = basis_locate(basis->kind, *direction);
+    const bool        symmetric = basis_is_symmetric(basis->kind);
+    const lanes_pair  t[3]      = {scaled(place.t, 0.5), place.t, scaled(place.t, 2.0)};
+    const lanes       re        = place.re.hi + place.re.lo;
+    const lanes       im        = place.im.hi + place.im.lo;
+    const basis_step *step      = basis->step;
+    lanes_pair        p_re      = {lanes_of(1.0), lanes_of(0.0)};
+    lanes_pair        p_im      = {lanes_of(0.0), lanes_of(0.0)};
     for (int m = 0; m < basis->order; m++) {
-        const lanes c = (power.re.hi + power.re.lo) * place.weight;
-        const lanes s = (power.im.hi + power.im.lo) * place.weight;
-        if (middle) {
-            walk_middle(step, basis->steps[m], place.argument, c, s, row);
+        const lanes c = (p_re.hi + p_re.lo) * place.weight;
+        const lanes s = (p_im.hi + p_im.lo) * place.weight;
+        if (symmetric) {
+            walk(step, basis->steps[m], true, t, c, s, row);
         } else {
-            walk_end(step, basis->steps[m], place.argument, place.parity, c, s, row);
+            walk(step, basis->steps[m], false, t, c, s, row);
         }
         step += basis->steps[m];
-        power = multiply_base(power, &place, re, im);
+        multiply_base(&p_re, &p_im, &place, re, im);
     }
 }
 
-static void evaluate_pair(const assay_basis *basis, int zone, const assay_vec3 *a, double *row_a,
-                          const assay_vec3 *b, double *row_b)
+/* count <= LANES directions, the first of them again in the lanes that are left. */
+static void evaluate_some(const assay_basis *basis, size_t count, const assay_vec3 *directions,
+                          double *values)
 {
-    const lanes_direction direction  = {{a->x, b->x}, {a->y, b->y}, {a->z, b->z}};
-    double *const         row[LANES] = {row_a, row_b};
-    evaluate_lanes(basis, zone, &direction, row);
+    lanes_direction d;
+    double         *row[LANES];
+    for (size_t lane = 0; lane < LANES; lane++) {
+        const size_t i = lane < count ? lane : 0;
+        d.x[lane]      = directions[i].x;
+        d.y[lane]      = directions[i].y;
+        d.z[lane]      = directions[i].z;
+        row[lane]      = values + i * basis->count;
+    }
+    evaluate_lanes(basis, &d, row);
 }
 
 assay_status assay_basis_evaluate(const assay_basis *basis, assay_vec3 direction,
                                   double *values_out)
 {
-    const assay_status status = basis_check_direction(basis, direction);
-    if (status == ASSAY_OK) {
-        evaluate_pair(basis, basis_zone(basis, direction.z), &direction, values_out, &direction,
-                      values_out);
-    }
-    return status;
+    return assay_basis_evaluate_many(basis, 1, &direction, values_out);
 }
 
 assay_status assay_basis_evaluate_many(const assay_basis *basis, size_t direction_count,
@@ -127,24 +121,10 @@ assay_status assay_basis_evaluate_many(const assay_basis *basis, size_t directio
             return status;
         }
     }
-    size_t waiting[BASIS_ZONES] = {SIZE_MAX, SIZE_MAX}; /* a direction without its partner */
-    for (size_t i = 0; i < direction_count; i++) {
-        const int    zone = basis_zone(basis, directions[i].z);
-        const size_t j    = waiting[zone];
-        if (j == SIZE_MAX) {
-            waiting[zone] = i;
-            continue;
-        }
-        evaluate_pair(basis, zone, &directions[j], values_out + j * basis->count, &directions[i],
+    for (size_t i = 0; i < direction_count; i += LANES) {
+        const size_t left = direction_count - i;
+        evaluate_some(basis, left < LANES ? left : LANES, directions + i,
                       values_out + i * basis->count);
-        waiting[zone] = SIZE_MAX;
-    }
-    for (int zone = 0; zone < BASIS_ZONES; zone++) {
-        const size_t j = waiting[zone];
-        if (j != SIZE_MAX) {
-            evaluate_pair(basis, zone, &directions[j], values_out + j * basis->count,
-                          &directions[j], values_out + j * basis->count);
-        }
     }
     return ASSAY_OK;
 }
