@@ -123,6 +123,13 @@ static void place_steps(assay_basis *basis)
     }
 }
 
+/* ASSAY_ISA=sse2 forbids wide vectors, for tests. */
+static bool may_be_wide(const assay_context *context)
+{
+    const char *isa = assay_context_isa(context);
+    return basis_has_wide() && (!isa || strcmp(isa, "sse2") != 0);
+}
+
 assay_status assay_basis_create(assay_context *context, assay_basis_kind kind, int order,
                                 assay_convention convention, assay_basis **basis_out)
 {
@@ -138,6 +145,7 @@ assay_status assay_basis_create(assay_context *context, assay_basis_kind kind, i
     basis->kind        = kind;
     basis->order       = order;
     basis->convention  = convention;
+    basis->wide        = may_be_wide(context);
     const size_t steps = arrange(basis);
     basis->step        = assay_allocate(context, steps, sizeof(basis_step));
     if (!basis->step) {
