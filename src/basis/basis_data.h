@@ -28,8 +28,8 @@ struct assay_basis {
     bool             wide;                         /* use basis_evaluate_wide */
     int              steps[ASSAY_BASIS_MAX_ORDER]; /* degrees of each m    */
     basis_step      *step;                         /* by m, then by degree */
-    signed char      l[ASSAY_BASIS_MAX_ORDER * ASSAY_BASIS_MAX_ORDER];
-    signed char      m[ASSAY_BASIS_MAX_ORDER * ASSAY_BASIS_MAX_ORDER];
+    short            l[ASSAY_BASIS_MAX_ORDER * ASSAY_BASIS_MAX_ORDER];
+    short            m[ASSAY_BASIS_MAX_ORDER * ASSAY_BASIS_MAX_ORDER];
 };
 
 /* Whether only l + m even is in the basis. */
