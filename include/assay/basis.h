@@ -147,8 +147,9 @@ ASSAY_API void assay_rotation_from_euler_zyz(double alpha, double beta, double g
                                              double rotation_out[9]);
 
 /* D with c' = D c: coefficients of f(R^-1 w) from those of f; count * count, block-diagonal
- * [ivanic96, ivanic98].  For SH (any convention) and LSOSH.  Errors: ARGUMENT (kind), DOMAIN (R is
- * not a rotation to 2^-20). */
+ * (docs/methods/basis-rotation.md).  For SH (any convention) and LSOSH.  R may be off by rounding:
+ * what is meant is the rotation nearest to it.  Errors: ARGUMENT (kind), DOMAIN (R is not a
+ * rotation to 2^-20). */
 ASSAY_API assay_status assay_sh_rotation(const assay_basis *sh, const double rotation[9],
                                          double *matrix_out);
 
