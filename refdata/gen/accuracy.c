@@ -21,10 +21,10 @@ accuracy *accuracy_create(slong precision)
     accuracy *a = ref_allocate(1, sizeof *a);
     for (int k = 0; k < KINDS; k++) {
         a->bases[k] = basis_create(kinds[k], ACCURACY_ORDER, precision);
-        a->sums[k] = _arb_vec_init(ACCURACY_ORDER * ACCURACY_ORDER);
+        a->sums[k]  = _arb_vec_init(ACCURACY_ORDER * ACCURACY_ORDER);
     }
     a->values = _acb_vec_init(ACCURACY_ORDER * ACCURACY_ORDER);
-    a->zeros = _acb_vec_init(ACCURACY_ORDER);
+    a->zeros  = _acb_vec_init(ACCURACY_ORDER);
     arb_init(a->energy);
     return a;
 }

@@ -105,10 +105,10 @@ static void norm_squared(fmpq_t q, basis_kind kind, slong l, slong m)
 
 basis *basis_create(basis_kind kind, slong order, slong precision)
 {
-    basis *b = ref_allocate(1, sizeof *b);
-    b->kind = kind;
-    b->order = order;
-    b->norms = _arb_vec_init(order * order);
+    basis *b       = ref_allocate(1, sizeof *b);
+    b->kind        = kind;
+    b->order       = order;
+    b->norms       = _arb_vec_init(order * order);
     b->polynomials = ref_allocate((size_t)(order * order), sizeof *b->polynomials);
 
     fmpq_t q;
@@ -118,7 +118,7 @@ basis *basis_create(basis_kind kind, slong order, slong precision)
     arb_const_pi(pi, precision);
     for (slong m = 0; m < order; m++) {
         for (slong l = m; l < order; l += basis_band_step(kind)) {
-            jacobi *p = b->polynomials + order * l + m;
+            jacobi *p    = b->polynomials + order * l + m;
             arb_ptr norm = b->norms + order * l + m;
             if (kind == BASIS_ZERNIKE) {
                 jacobi_set(p, 0, m, (l - m) / 2);

@@ -11,8 +11,8 @@
 
 #include "ref.h"
 
-#define R2 0x1.6a09e667f3bcdp-1 /* double nearest to 1 / sqrt(2) */
-#define R3 0x1.279a74590331cp-1 /* 1 / sqrt(3) */
+#define R2 0x1.6a09e667f3bcdp-1           /* double nearest to 1 / sqrt(2) */
+#define R3 0x1.279a74590331cp-1           /* 1 / sqrt(3) */
 #define COS_HALF_PI 0x1.1a62633145c07p-54 /* cosine of the double nearest to pi / 2 */
 
 static const ref_direction upper_listed[] = {
@@ -47,15 +47,9 @@ static const ref_direction upper_listed[] = {
 };
 
 static const ref_direction lower_listed[] = {
-    {{0, 0, -1}},
-    {{1e-12, 0, -1}},
-    {{-6e-13, 7e-13, -1}},
-    {{3e-7, -9e-7, -1}},
-    {{1, 0, -COS_HALF_PI}},
-    {{0.6, -0.8, -1e-12}},
-    {{-0.28, 0.96, -1e-6}},
-    {{R3, -R3, -R3}},
-    {{0, 0.6, -0.8}},
+    {{0, 0, -1}},           {{1e-12, 0, -1}},       {{-6e-13, 7e-13, -1}},
+    {{3e-7, -9e-7, -1}},    {{1, 0, -COS_HALF_PI}}, {{0.6, -0.8, -1e-12}},
+    {{-0.28, 0.96, -1e-6}}, {{R3, -R3, -R3}},       {{0, 0.6, -0.8}},
 };
 
 #define COUNT(a) ((int)(sizeof(a) / sizeof((a)[0])))
@@ -106,7 +100,7 @@ ref_direction *ref_directions(int *count_out, int *upper_out)
 ref_direction *ref_few_directions(int *count_out)
 {
     static const int chosen[] = {0, 1, 4, 5, 6, 10, 12, 15, 17, 18, 21, 23};
-    const int        random = 6;
+    const int        random   = 6;
 
     int            all_count, upper;
     ref_direction *all = ref_directions(&all_count, &upper);
@@ -123,10 +117,10 @@ ref_direction *ref_few_directions(int *count_out)
 ref_direction *ref_gradient_directions(int *count_out, int *hemisphere_out)
 {
     static const int chosen[] = {0, 1, 5, 13, 15, 17, 18, 19};
-    const int        random = 4;
+    const int        random   = 4;
 
     int            all_count, upper;
-    ref_direction *all = ref_directions(&all_count, &upper);
+    ref_direction *all  = ref_directions(&all_count, &upper);
     ref_direction *some = ref_allocate((size_t)(COUNT(chosen) + random + 4), sizeof *some);
     ref_direction *next = some;
     for (int i = 0; i < COUNT(chosen); i++) {
@@ -136,10 +130,10 @@ ref_direction *ref_gradient_directions(int *count_out, int *hemisphere_out)
         *next++ = all[COUNT(upper_listed) + i];
     }
     *hemisphere_out = (int)(next - some);
-    *next++ = all[6];         /* on the horizon   */
-    *next++ = all[upper];     /* the other pole   */
-    *next++ = all[upper + 2]; /* close to it      */
-    *next++ = all[upper + COUNT(lower_listed)];
+    *next++         = all[6];         /* on the horizon   */
+    *next++         = all[upper];     /* the other pole   */
+    *next++         = all[upper + 2]; /* close to it      */
+    *next++         = all[upper + COUNT(lower_listed)];
     free(all);
     *count_out = (int)(next - some);
     return some;

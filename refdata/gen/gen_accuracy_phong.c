@@ -87,8 +87,8 @@ static void add_normal(state *s, slong precision)
 static void enclose(void *user, arb_ptr out, slong count, slong precision)
 {
     const task *job = user;
-    state       s = {accuracy_create(precision + 64), _acb_vec_init(ACCURACY_ORDER),
-                     _acb_vec_init(ACCURACY_ORDER)};
+    state       s   = {accuracy_create(precision + 64), _acb_vec_init(ACCURACY_ORDER),
+                       _acb_vec_init(ACCURACY_ORDER)};
     arb_t       beta, error;
     arb_init(beta);
     arb_init(error);
@@ -111,19 +111,19 @@ static void enclose(void *user, arb_ptr out, slong count, slong precision)
 int main(int argc, char **argv)
 {
     static const slong degrees[] = {0, 30, 60, 80};
-    const ref_header   header = {
-          .name = "accuracy_phong",
-          .generator = "gen_accuracy_phong",
-          .content = "share of the energy of max(0, cos alpha)^5 that a basis captures, by order "
-                       "[gautron06] eq. 3.32",
-          .method = "Gauss product rule, error proven on Bernstein ellipses (lune.c)",
-          .notes = "alpha: angle to (sin theta, 0, cos theta); theta: rad, the double nearest to 0, "
-                     "30, 60, 80 degrees; order n: l < n; SH of the lobe that is 0 below the horizon; "
-                     "ESH: sqrt(2) Y_lm, l + m even; makhotkin_sqrt: times sqrt(cos theta)",
-          .keys = "theta order",
-          .values = "sh hsh esh zernike makhotkin_sqrt energy (integral of the lobe squared)",
-          .rows = 4 * ACCURACY_ORDER,
-          .columns = ACCURACY_COLUMNS};
+    const ref_header   header    = {
+             .name      = "accuracy_phong",
+             .generator = "gen_accuracy_phong",
+             .content   = "share of the energy of max(0, cos alpha)^5 that a basis captures, by order "
+                               "[gautron06] eq. 3.32",
+             .method    = "Gauss product rule, error proven on Bernstein ellipses (lune.c)",
+             .notes = "alpha: angle to (sin theta, 0, cos theta); theta: rad, the double nearest to 0, "
+                           "30, 60, 80 degrees; order n: l < n; SH of the lobe that is 0 below the horizon; "
+                           "ESH: sqrt(2) Y_lm, l + m even; makhotkin_sqrt: times sqrt(cos theta)",
+             .keys  = "theta order",
+             .values  = "sh hsh esh zernike makhotkin_sqrt energy (integral of the lobe squared)",
+             .rows    = 4 * ACCURACY_ORDER,
+             .columns = ACCURACY_COLUMNS};
     ref_table *table = ref_create(argc > 1 ? argv[1] : ".", &header);
     for (int i = 0; i < 4; i++) {
         task job = {accuracy_radians(degrees[i])};

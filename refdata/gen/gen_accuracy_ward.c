@@ -1,11 +1,12 @@
 /* gen_accuracy_ward.c - accuracy_ward: Ward's BRDF (0.2, 0.5) [ward92] eq. 5 times cos(theta_i).
  *
  *     f = sqrt(z / cos t) exp(-q) / (4 pi ax ay),
- *     q = ((x + sin t)^2 / ax^2 + y^2 / ay^2) / (z + cos t)^2,   outgoing direction (sin t, 0, cos t)
+ *     q = ((x + sin t)^2 / ax^2 + y^2 / ay^2) / (z + cos t)^2,   outgoing direction (sin t, 0, cos
+ * t)
  *
- * Coordinates z = cos^2 u, (x, y) = sin u sqrt(1 + cos^2 u) (cos p, sin p), dw = 2 cos u sin u du dp,
- * 0 <= u <= pi / 2: Gauss's rule in u (bound on an ellipse with the half-axes' sum rho, lune.c) and
- * the trapezium rule of N nodes over the period in p.
+ * Coordinates z = cos^2 u, (x, y) = sin u sqrt(1 + cos^2 u) (cos p, sin p), dw = 2 cos u sin u du
+ * dp, 0 <= u <= pi / 2: Gauss's rule in u (bound on an ellipse with the half-axes' sum rho, lune.c)
+ * and the trapezium rule of N nodes over the period in p.
  *
  * Invariant: each sum is widened by what the rules can leave out.  In p the integrand is entire and
  * of period 2 pi; if it is at most M for |Im p| <= eta, the rule errs by less than
@@ -180,7 +181,7 @@ static void piece_of_p(acb_t cosine, double eta, slong i, slong n, slong precisi
 /* Largest |B| for |cos(m p)| <= cosh(m eta) and u on a piece: C_m = rho^m cos(m p). */
 static void bound_bases(mag_t out, const accuracy *a, double rho, double eta, slong precision)
 {
-    const slong n = 128;
+    const slong n       = 128;
     acb_ptr     cosines = _acb_vec_init(ACCURACY_ORDER);
     acb_t       s, power;
     ring        r;
@@ -308,8 +309,8 @@ static slong nodes_in_p(arb_t error, const mag_t bound, double eta, slong bits)
 
 /* The trapezium rule on a ring: cosines[m] = rho^m times the integral of f cos(m p), and that of
  * f^2.  table: cos(2 pi k / N) for k < N. */
-static void ring_sums(acb_ptr cosines, arb_t squares, const lobe *f, const ring *r, arb_srcptr table,
-                      slong n, slong precision)
+static void ring_sums(acb_ptr cosines, arb_t squares, const lobe *f, const ring *r,
+                      arb_srcptr table, slong n, slong precision)
 {
     acb_t value, cosine, power;
     arb_t t;
@@ -350,7 +351,7 @@ static void ring_sums(acb_ptr cosines, arb_t squares, const lobe *f, const ring 
 
 static void add_all(accuracy *a, const lobe *f, slong nu, slong np, slong precision)
 {
-    arb_ptr table = _arb_vec_init(np);
+    arb_ptr table   = _arb_vec_init(np);
     acb_ptr cosines = _acb_vec_init(ACCURACY_ORDER);
     arb_t   weight, squares;
     acb_t   s, w;
@@ -426,9 +427,9 @@ static void choose_nodes(slong *nu, slong *np, arb_t error, const accuracy *a, c
 
 static void enclose(void *user, arb_ptr out, slong count, slong precision)
 {
-    const task *job = user;
+    const task *job     = user;
     const slong working = precision + 64;
-    accuracy   *a = accuracy_create(working);
+    accuracy   *a       = accuracy_create(working);
     lobe        f;
     arb_t       error;
     slong       nu, np;
@@ -449,20 +450,20 @@ static void enclose(void *user, arb_ptr out, slong count, slong precision)
 int main(int argc, char **argv)
 {
     static const slong degrees[] = {0, 30, 60};
-    const ref_header   header = {
-          .name = "accuracy_ward",
-          .generator = "gen_accuracy_ward",
-          .content = "share of the energy of Ward's BRDF (alpha 0.2, 0.5; k_d 0, k_s 1) times "
-                       "cos(theta_i) that a basis captures, by order [gautron06] eq. 3.32",
-          .method = "Gauss rule in u (z = cos^2 u) times trapezium rule in phi, both errors proven",
-          .notes = "outgoing direction (sin theta, 0, cos theta); theta: rad, the double nearest to "
-                     "0, 30, 60 degrees; alpha_x, alpha_y: the doubles nearest to 0.2 and 0.5; order "
-                     "n: l < n; SH of the lobe that is 0 below the horizon; ESH: sqrt(2) Y_lm, l + m "
-                     "even; makhotkin_sqrt: times sqrt(cos theta)",
-          .keys = "theta order",
-          .values = "sh hsh esh zernike makhotkin_sqrt energy (integral of the lobe squared)",
-          .rows = 3 * ACCURACY_ORDER,
-          .columns = ACCURACY_COLUMNS};
+    const ref_header   header    = {
+             .name      = "accuracy_ward",
+             .generator = "gen_accuracy_ward",
+             .content   = "share of the energy of Ward's BRDF (alpha 0.2, 0.5; k_d 0, k_s 1) times "
+                               "cos(theta_i) that a basis captures, by order [gautron06] eq. 3.32",
+             .method = "Gauss rule in u (z = cos^2 u) times trapezium rule in phi, both errors proven",
+             .notes = "outgoing direction (sin theta, 0, cos theta); theta: rad, the double nearest to "
+                           "0, 30, 60 degrees; alpha_x, alpha_y: the doubles nearest to 0.2 and 0.5; order "
+                           "n: l < n; SH of the lobe that is 0 below the horizon; ESH: sqrt(2) Y_lm, l + m "
+                           "even; makhotkin_sqrt: times sqrt(cos theta)",
+             .keys  = "theta order",
+             .values  = "sh hsh esh zernike makhotkin_sqrt energy (integral of the lobe squared)",
+             .rows    = 3 * ACCURACY_ORDER,
+             .columns = ACCURACY_COLUMNS};
     ref_table *table = ref_create(argc > 1 ? argv[1] : ".", &header);
     for (int i = 0; i < 3; i++) {
         task job = {accuracy_radians(degrees[i])};

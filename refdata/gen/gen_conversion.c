@@ -249,14 +249,14 @@ static void write_entry(ref_table *table, const entry *e, slong sign)
 }
 
 static const ref_header conversion_header = {
-    .name = "conversion",
+    .name      = "conversion",
     .generator = "gen_conversion",
-    .content = "conversion matrix C, HSH rows l < 10, SH columns l' < 16 [gautron06] eq. 3.20",
-    .method = "closed form with exact rational coefficients; checked by quadrature",
-    .notes = "thesis signs; hsh = C sh, sh = C^T hsh; entries with another m are 0 and left out; "
-             "the sum of both values is the number to about 107 bits",
-    .keys = "m l l'",
-    .values = "nearest double; double nearest to the rest",
+    .content   = "conversion matrix C, HSH rows l < 10, SH columns l' < 16 [gautron06] eq. 3.20",
+    .method    = "closed form with exact rational coefficients; checked by quadrature",
+    .notes   = "thesis signs; hsh = C sh, sh = C^T hsh; entries with another m are 0 and left out; "
+               "the sum of both values is the number to about 107 bits",
+    .keys    = "m l l'",
+    .values  = "nearest double; double nearest to the rest",
     .columns = 2};
 
 static void write_conversion(const char *folder)
@@ -279,8 +279,8 @@ static void write_conversion(const char *folder)
 static void write_bands(const char *folder)
 {
     static const slong chosen[] = {0, 1, 2, 16, 31, 32};
-    ref_header         header = conversion_header;
-    header.name = "conversion_bands";
+    ref_header         header   = conversion_header;
+    header.name                 = "conversion_bands";
     header.content = "conversion matrix C, HSH rows l <= 32, SH columns l' <= 32, six values of m";
     for (int i = 0; i < 6; i++) {
         header.rows += (33 - chosen[i]) * (33 - chosen[i]);

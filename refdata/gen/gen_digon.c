@@ -93,18 +93,18 @@ static void bound_products(void *user, arb_t out, const lune_point *p, slong pre
 static void enclose_matrices(void *user, arb_ptr out, slong count, slong precision)
 {
     const task *job = user;
-    const slong n = basis_count(BASIS_HSH, job->order);
-    sums        s = {.order = job->order, .count = n};
+    const slong n   = basis_count(BASIS_HSH, job->order);
+    sums        s   = {.order = job->order, .count = n};
     arb_t       beta, error;
     arb_init(beta);
     arb_init(error);
-    s.b = basis_create(BASIS_HSH, job->order, precision + 64);
+    s.b       = basis_create(BASIS_HSH, job->order, precision + 64);
     s.cosines = _acb_vec_init(job->order);
-    s.sines = _acb_vec_init(job->order);
-    s.first = _acb_vec_init(n);
-    s.second = _acb_vec_init(n);
-    s.m = _arb_vec_init(n * n);
-    s.turned = _arb_vec_init(n * n);
+    s.sines   = _acb_vec_init(job->order);
+    s.first   = _acb_vec_init(n);
+    s.second  = _acb_vec_init(n);
+    s.m       = _arb_vec_init(n * n);
+    s.turned  = _arb_vec_init(n * n);
     arb_set_d(beta, job->beta);
     const lune_integrand f = {add_products, bound_products, &s};
     lune_integrate(error, &f, beta, precision);
@@ -170,24 +170,24 @@ static ref_table *open_table(const char *folder, int turned, slong order, slong 
 {
     ref_header header = {.generator = "gen_digon"};
     if (turned) {
-        header.name = order == 6 ? "hsh_rotation_order6" : "hsh_rotation_order10";
+        header.name    = order == 6 ? "hsh_rotation_order6" : "hsh_rotation_order10";
         header.content = "rotation of HSH about +y, what leaves the hemisphere lost, "
                          "T = M_R^T [gautron06] eq. 3.31";
         header.notes = "thesis signs; out = T in, rows are outputs: T[j][i] = integral over z > 0, "
                        "(R w)_z > 0 of H_i(w) H_j(R w); beta > 0 moves the pole to +x; "
                        "index l*l + l + m";
     } else {
-        header.name = order == 6 ? "digon_order6" : "digon_order10";
+        header.name    = order == 6 ? "digon_order6" : "digon_order10";
         header.content = "digon deletion of HSH, M [gautron06] eq. 3.27";
-        header.notes = "thesis signs; M[i][j] = integral over z > 0, (R w)_z > 0 of "
-                       "H_i(w) H_j(w), symmetric; R about +y, beta > 0 moves the pole to +x; "
-                       "index l*l + l + m";
+        header.notes   = "thesis signs; M[i][j] = integral over z > 0, (R w)_z > 0 of "
+                         "H_i(w) H_j(w), symmetric; R about +y, beta > 0 moves the pole to +x; "
+                         "index l*l + l + m";
     }
-    header.method = "Gauss product rule, error proven on Bernstein ellipses (lune.c)";
-    header.keys = "beta row";
-    header.values = "column of the matrix; beta: rad, the double nearest to a whole number of "
-                    "degrees";
-    header.rows = angles * order * order;
+    header.method  = "Gauss product rule, error proven on Bernstein ellipses (lune.c)";
+    header.keys    = "beta row";
+    header.values  = "column of the matrix; beta: rad, the double nearest to a whole number of "
+                     "degrees";
+    header.rows    = angles * order * order;
     header.columns = order * order;
     return ref_create(folder, &header);
 }
@@ -206,10 +206,10 @@ static void write_matrix(ref_table *table, double beta, const ref_number *matrix
 
 static void write_tables(const char *folder, slong order, const slong *degrees, slong angles)
 {
-    const slong n = order * order;
+    const slong n       = order * order;
     ref_number *numbers = ref_allocate((size_t)(2 * n * n), sizeof *numbers);
-    ref_table  *digon = open_table(folder, 0, order, angles);
-    ref_table  *turned = open_table(folder, 1, order, angles);
+    ref_table  *digon   = open_table(folder, 0, order, angles);
+    ref_table  *turned  = open_table(folder, 1, order, angles);
     for (slong k = 0; k < angles; k++) {
         task job = {radians(degrees[k]), order};
         ref_round_all(enclose_matrices, &job, 2 * n * n, 0, numbers);

@@ -123,7 +123,7 @@ static void enclose_gradients(void *user, arb_ptr out, slong count, slong precis
     basis *b = basis_create(job->kind, ORDER, precision);
     for (slong l = 0; l < ORDER; l++) {
         for (slong m = -l; m <= l; m++) {
-            const slong   k = labs(m);
+            const slong   k   = labs(m);
             const acb_ptr own = m < 0 ? sines : cosines, other = m < 0 ? cosines : sines;
             zonal_part(g, slope, b, job->kind, l, k, n + 2, precision);
             arb_mul(gradient + 2, slope, acb_realref(own + k), precision);
@@ -154,7 +154,7 @@ static void enclose_gradients(void *user, arb_ptr out, slong count, slong precis
 
 static void values_at(acb_ptr out, arb_srcptr d, const basis *b, basis_kind kind, slong precision)
 {
-    arb_ptr n = _arb_vec_init(3);
+    arb_ptr n       = _arb_vec_init(3);
     acb_ptr cosines = _acb_vec_init(ORDER), sines = _acb_vec_init(ORDER);
     arb_t   r;
     acb_t   z, root_z;
@@ -221,15 +221,15 @@ static void check_differences(const double *direction, basis_kind kind)
 static void write_table(const char *folder, const ref_header *header, basis_kind kind,
                         const ref_direction *directions, int count)
 {
-    ref_header  full = *header;
+    ref_header  full    = *header;
     ref_number *numbers = ref_allocate(3 * COUNT, sizeof *numbers);
-    full.generator = "gen_gradients";
-    full.method = "derivatives of explicit Jacobi sums; checked against differences at 1024 bits";
-    full.notes = "thesis signs; gradient on the unit sphere, tangential, per radian, at d / |d|, "
-                 "d = (x, y, z); a row holds one component (0: x, 1: y, 2: z) of all functions";
-    full.keys = "x y z component";
-    full.values = "column l*l + l + m";
-    full.rows = 3 * count;
+    full.generator      = "gen_gradients";
+    full.method  = "derivatives of explicit Jacobi sums; checked against differences at 1024 bits";
+    full.notes   = "thesis signs; gradient on the unit sphere, tangential, per radian, at d / |d|, "
+                   "d = (x, y, z); a row holds one component (0: x, 1: y, 2: z) of all functions";
+    full.keys    = "x y z component";
+    full.values  = "column l*l + l + m";
+    full.rows    = 3 * count;
     full.columns = COUNT;
     ref_table *table = ref_create(folder, &full);
     for (int i = 0; i < count; i++) {
@@ -252,11 +252,11 @@ static void write_table(const char *folder, const ref_header *header, basis_kind
 
 int main(int argc, char **argv)
 {
-    static const ref_header sh = {.name = "sh_gradients",
-                                  .content = "surface gradients of spherical harmonics, l <= 16"};
-    static const ref_header hsh = {
-        .name = "hsh_gradients",
-        .content = "surface gradients of hemispherical harmonics, l <= 16"};
+    static const ref_header sh  = {.name    = "sh_gradients",
+                                   .content = "surface gradients of spherical harmonics, l <= 16"};
+    static const ref_header hsh = {.name = "hsh_gradients",
+                                   .content =
+                                       "surface gradients of hemispherical harmonics, l <= 16"};
 
     const char    *folder = argc > 1 ? argv[1] : ".";
     int            count, upper;

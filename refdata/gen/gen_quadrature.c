@@ -84,15 +84,15 @@ static void enclose_node(void *user, arb_ptr out, slong count, slong precision)
 static void write_cosine(const char *folder)
 {
     const ref_header header = {
-        .name = "clamped_cosine",
+        .name      = "clamped_cosine",
         .generator = "gen_quadrature",
-        .content = "A_l of the clamped cosine: irradiance = sum of A_l c_lm Y_lm(n) [kontkanen]",
-        .method = "2 pi integral of z P_l(z), exact rational multiple of pi",
-        .notes = "A_0 = pi; the sum of both values is the number to about 107 bits",
-        .keys = "l",
-        .values = "nearest double; double nearest to the rest",
-        .rows = 33,
-        .columns = 2};
+        .content   = "A_l of the clamped cosine: irradiance = sum of A_l c_lm Y_lm(n) [kontkanen]",
+        .method    = "2 pi integral of z P_l(z), exact rational multiple of pi",
+        .notes     = "A_0 = pi; the sum of both values is the number to about 107 bits",
+        .keys      = "l",
+        .values    = "nearest double; double nearest to the rest",
+        .rows      = 33,
+        .columns   = 2};
     ref_table *table = ref_create(folder, &header);
     for (slong l = 0; l < 33; l++) {
         task       job = {l, 0};
@@ -112,16 +112,16 @@ static void write_cosine(const char *folder)
 static void write_gauss(const char *folder)
 {
     static const slong sizes[] = {2, 3, 5, 16, 64};
-    const ref_header   header = {.name = "gauss_legendre",
-                                 .generator = "gen_quadrature",
-                                 .content = "nodes and weights of Gauss-Legendre rules on [-1, 1]",
-                                 .method = "Arb's enclosures of the roots of P_n",
-                                 .notes = "nodes growing; high + low is the number to about 107 bits",
-                                 .keys = "n i",
-                                 .values = "node high, low; weight high, low",
-                                 .rows = 2 + 3 + 5 + 16 + 64,
-                                 .columns = 4};
-    ref_table         *table = ref_create(folder, &header);
+    const ref_header   header  = {.name      = "gauss_legendre",
+                                  .generator = "gen_quadrature",
+                                  .content = "nodes and weights of Gauss-Legendre rules on [-1, 1]",
+                                  .method  = "Arb's enclosures of the roots of P_n",
+                                  .notes = "nodes growing; high + low is the number to about 107 bits",
+                                  .keys    = "n i",
+                                  .values  = "node high, low; weight high, low",
+                                  .rows    = 2 + 3 + 5 + 16 + 64,
+                                  .columns = 4};
+    ref_table         *table   = ref_create(folder, &header);
     for (int k = 0; k < 5; k++) {
         for (slong i = 0; i < sizes[k]; i++) {
             task       job = {sizes[k], i};

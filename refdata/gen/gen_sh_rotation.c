@@ -69,7 +69,7 @@ static void small_d(arb_t out, slong l, slong row, slong column, arb_srcptr cosi
 /* Block of the turn about y for real functions: (l + m', l + m), 2l + 1 columns. */
 static void turn_y(arb_ptr block, slong l, double beta, slong precision)
 {
-    const slong n = 2 * l + 1;
+    const slong n       = 2 * l + 1;
     arb_ptr     cosines = _arb_vec_init(n), sines = _arb_vec_init(n);
     arb_t       half, c, s, a, b;
     arb_init(half);
@@ -235,18 +235,18 @@ static void write_table(const char *folder, slong l, const double (*angles)[3], 
     snprintf(content, sizeof content, "rotation of spherical harmonics, block of band l = %ld",
              (long)l);
     const ref_header header = {
-        .name = name,
+        .name      = name,
         .generator = "gen_sh_rotation",
-        .content = content,
-        .method = "Wigner's sum; every block checked against its definition at a direction",
-        .notes = "thesis signs; out = D in, rows are outputs; R = Rz(alpha) Ry(beta) Rz(gamma), "
-                 "active, right-handed, rad; Y_j(R^-1 w) = sum over i of D_ij Y_i(w)",
-        .keys = "alpha beta gamma m",
-        .values = "column l + m of the block",
-        .rows = count * n,
+        .content   = content,
+        .method    = "Wigner's sum; every block checked against its definition at a direction",
+        .notes   = "thesis signs; out = D in, rows are outputs; R = Rz(alpha) Ry(beta) Rz(gamma), "
+                   "active, right-handed, rad; Y_j(R^-1 w) = sum over i of D_ij Y_i(w)",
+        .keys    = "alpha beta gamma m",
+        .values  = "column l + m of the block",
+        .rows    = count * n,
         .columns = n};
     ref_number *numbers = ref_allocate((size_t)(n * n), sizeof *numbers);
-    ref_table  *table = ref_create(folder, &header);
+    ref_table  *table   = ref_create(folder, &header);
     for (int k = 0; k < count; k++) {
         task job = {{angles[k][0], angles[k][1], angles[k][2]}, l};
         check_definition(&job);

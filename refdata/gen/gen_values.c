@@ -80,9 +80,9 @@ static void next_solid(arb_t u, const arb_t u1, slong l, slong m, const arb_t z,
 
 static void enclose_sh(void *user, arb_ptr out, slong count, slong precision)
 {
-    const task *job = user;
-    const slong n = job->order;
-    arb_ptr     d = _arb_vec_init(3);
+    const task *job     = user;
+    const slong n       = job->order;
+    arb_ptr     d       = _arb_vec_init(3);
     acb_ptr     cosines = _acb_vec_init(n), sines = _acb_vec_init(n);
     arb_t       squared, norm, u[2];
     arb_init(squared);
@@ -122,9 +122,9 @@ static void enclose_sh(void *user, arb_ptr out, slong count, slong precision)
 
 static void enclose_by_sums(void *user, arb_ptr out, slong count, slong precision)
 {
-    const task *job = user;
-    const slong n = job->order;
-    arb_ptr     d = _arb_vec_init(3);
+    const task *job     = user;
+    const slong n       = job->order;
+    arb_ptr     d       = _arb_vec_init(3);
     acb_ptr     cosines = _acb_vec_init(n), sines = _acb_vec_init(n), values = _acb_vec_init(count);
     arb_t       squared;
     acb_t       r, z, root_z, power;
@@ -206,7 +206,8 @@ static void check_sh(const double *direction, slong order)
     _arb_vec_clear(d, 3);
 }
 
-/* sqrt(2) K~ P_l^m(2 cos theta - 1) cos(m phi) as eq. 3.18 prints it, by Arb's Legendre function. */
+/* sqrt(2) K~ P_l^m(2 cos theta - 1) cos(m phi) as eq. 3.18 prints it, by Arb's Legendre function.
+ */
 static void check_hsh(const double *direction, slong order)
 {
     const slong precision = 512, count = order * order;
@@ -263,13 +264,13 @@ static void write_table(const char *folder, const ref_header *header, basis_kind
                         const ref_direction *directions, int count)
 {
     const slong columns = basis_count(kind, order);
-    ref_header  full = *header;
+    ref_header  full    = *header;
     ref_number *numbers = ref_allocate((size_t)columns, sizeof *numbers);
-    full.generator = "gen_values";
-    full.keys = "x y z";
-    full.rows = count;
-    full.columns = columns;
-    ref_table *table = ref_create(folder, &full);
+    full.generator      = "gen_values";
+    full.keys           = "x y z";
+    full.rows           = count;
+    full.columns        = columns;
+    ref_table *table    = ref_create(folder, &full);
     for (int i = 0; i < count; i++) {
         task job = {directions[i].d, order, kind};
         ref_round_all(kind == BASIS_SH ? enclose_sh : enclose_by_sums, &job, columns, 0, numbers);
@@ -291,40 +292,40 @@ static void write_table(const char *folder, const ref_header *header, basis_kind
 #define SUMS "explicit Jacobi sums at exact C_m(x, y); checked against Arb's functions"
 
 static const ref_header sh_header = {
-    .name = "sh_values",
+    .name    = "sh_values",
     .content = "real spherical harmonics, l <= 32 [gautron06] eq. 3.7",
-    .method = "homogeneous polynomials, exact but for norm and |d|; checked in two other ways",
-    .notes = THESIS,
-    .values = "column l*l + l + m"};
-static const ref_header hsh_header = {
-    .name = "hsh_values",
-    .content = "hemispherical harmonics, l <= 32 [gautron06] eq. 3.18",
-    .method = SUMS,
-    .notes = THESIS,
-    .values = "column l*l + l + m"};
+    .method  = "homogeneous polynomials, exact but for norm and |d|; checked in two other ways",
+    .notes   = THESIS,
+    .values  = "column l*l + l + m"};
+static const ref_header hsh_header     = {.name = "hsh_values",
+                                          .content =
+                                              "hemispherical harmonics, l <= 32 [gautron06] eq. 3.18",
+                                          .method = SUMS,
+                                          .notes  = THESIS,
+                                          .values = "column l*l + l + m"};
 static const ref_header zernike_header = {
-    .name = "zernike_values",
+    .name    = "zernike_values",
     .content = "hemispherical Zernike functions, degree l <= 16 [koenderink96]",
-    .method = SUMS,
-    .notes = OTHER,
-    .values = "column l(l+1)/2 + (l+m)/2, l - |m| even"};
+    .method  = SUMS,
+    .notes   = OTHER,
+    .values  = "column l(l+1)/2 + (l+m)/2, l - |m| even"};
 static const ref_header makhotkin_header = {
-    .name = "makhotkin_values",
+    .name    = "makhotkin_values",
     .content = "Makhotkin's functions, orthonormal under cos(theta) dw, l <= 16 [makhotkin96]",
-    .method = SUMS,
-    .notes = OTHER,
-    .values = "column l*l + l + m"};
+    .method  = SUMS,
+    .notes   = OTHER,
+    .values  = "column l*l + l + m"};
 static const ref_header makhotkin_sqrt_header = {
-    .name = "makhotkin_sqrt_values",
+    .name    = "makhotkin_sqrt_values",
     .content = "Makhotkin's functions times sqrt(cos(theta)), orthonormal under dw, l <= 16",
-    .method = SUMS,
-    .notes = OTHER,
-    .values = "column l*l + l + m"};
+    .method  = SUMS,
+    .notes   = OTHER,
+    .values  = "column l*l + l + m"};
 
 int main(int argc, char **argv)
 {
-    const char *folder = argc > 1 ? argv[1] : ".";
-    int         count, upper, few_count;
+    const char    *folder = argc > 1 ? argv[1] : ".";
+    int            count, upper, few_count;
     ref_direction *all = ref_directions(&count, &upper);
     ref_direction *few = ref_few_directions(&few_count);
 

@@ -311,8 +311,8 @@ void lune_integrate(arb_t error_out, const lune_integrand *f, const arb_t beta, 
     const double pi = 3.141592653589793, b = fabs(arf_get_d(arb_midref(beta), ARF_RND_NEAR));
     const double near_w = asinh(sqrt(pi / (pi - b) - 1.0)) * 4.0 / pi;
     const double near_v = asinh(1.0) * 4.0 / pi;
-    const double rho_w = 1.0 + 0.75 * (ellipse_through(near_w) - 1.0);
-    const double rho_v = 1.0 + 0.75 * (ellipse_through(near_v) - 1.0);
+    const double rho_w  = 1.0 + 0.75 * (ellipse_through(near_w) - 1.0);
+    const double rho_v  = 1.0 + 0.75 * (ellipse_through(near_v) - 1.0);
 
     arb_t other;
     arb_init(other);

@@ -94,7 +94,7 @@ void ref_round_all(ref_enclosure enclose, void *user, slong count, int with_low,
                    ref_number *numbers)
 {
     arb_ptr balls = _arb_vec_init(count);
-    slong   bad = 0;
+    slong   bad   = 0;
     for (slong precision = REF_FIRST_PRECISION; precision <= REF_LAST_PRECISION; precision *= 2) {
         enclose(user, balls, count, precision);
         for (bad = 0; bad < count && round_both(balls + bad, with_low, numbers + bad, precision);) {
@@ -126,9 +126,9 @@ ref_table *ref_create(const char *directory, const ref_header *header)
     if (!table->file) {
         ref_fail("%s: cannot be written", table->path);
     }
-    table->keys = count_words(header->keys);
+    table->keys    = count_words(header->keys);
     table->columns = header->columns;
-    table->rows = header->rows;
+    table->rows    = header->rows;
     fprintf(table->file, "# table: %s\n# content: %s\n", header->name, header->content);
     fprintf(table->file, "# generator: refdata/gen/%s.c (Arb ball arithmetic)\n",
             header->generator);
