@@ -24,8 +24,8 @@ static const shape shapes[] = {
     {"accuracy_phong", 2, 6, 4 * 10},
     {"accuracy_ward", 2, 6, 3 * 10},
     {"clamped_cosine", 1, 2, 33},
-    {"conversion", 3, 2, 10 * 16 + 2 * (9 * 15 + 8 * 14 + 7 * 13 + 6 * 12 + 5 * 11 + 4 * 10 +
-                                        3 * 9 + 2 * 8 + 1 * 7)},
+    {"conversion", 3, 2,
+     10 * 16 + 2 * (9 * 15 + 8 * 14 + 7 * 13 + 6 * 12 + 5 * 11 + 4 * 10 + 3 * 9 + 2 * 8 + 1 * 7)},
     {"conversion_bands", 3, 2, 33 * 33 + 32 * 32 + 31 * 31 + 17 * 17 + 2 * 2 + 1},
     {"digon_order10", 2, 100, 100},
     {"digon_order6", 2, 36, 6 * 36},
@@ -89,7 +89,7 @@ static void manifest_holds(void **state)
 static void folder_holds_nothing_else(void **state)
 {
     DIR   *folder = opendir("refdata/basis");
-    size_t files = 0;
+    size_t files  = 0;
     assert_non_null(folder);
     for (const struct dirent *entry; (entry = readdir(folder));) {
         files += entry->d_name[0] != '.';
@@ -141,7 +141,7 @@ static void broken_tables_are_refused(void **state)
         assert_non_null(why);
     }
     char             text[] = HEADER "1 2 0x1.8p+1\n-1 3 -0x0p-1074\n";
-    reference_table *table = reference_table_parse(text, &why);
+    reference_table *table  = reference_table_parse(text, &why);
     assert_non_null(table);
     assert_true(reference_table_values(table, 0)[0] == 3.0);
     assert_int_equal(reference_table_find(table, (double[]){-1, 3}, 2), 1);

@@ -37,7 +37,7 @@ char *reference_file_bytes(const char *path, size_t *size_out)
     assert_int_equal(ferror(file), 0);
     fclose(file);
     bytes[size] = '\0';
-    *size_out = size;
+    *size_out   = size;
     return bytes;
 }
 
@@ -132,7 +132,7 @@ static const char *take_lines(reference_table *table, char *text)
 reference_table *reference_table_parse(char *text, const char **why_out)
 {
     reference_table *table = calloc(1, sizeof *table);
-    *why_out = table ? take_lines(table, text) : "out of memory";
+    *why_out               = table ? take_lines(table, text) : "out of memory";
     if (*why_out) {
         reference_table_free(table);
         return NULL;
