@@ -1,0 +1,239 @@
+/* hsh_overlap.c - the one integral behind M(beta) and M_R(beta).
+ *
+ * Invariant: the integrand is analytic in the two variables of the rule up to the edges, so Gauss
+ * converges geometrically; the nodes leave less than 1e-15 (docs/methods/basis-rotation.md).
+ *
+ * In polar coordinates about the y axis the region is a rectangle and the turn adds to d.  At the
+ * horizon H_l^m behaves as z^(m/2), z = cos(psi) sin(d):
+ *   - in psi, cos(psi) = sin(p) with p = pi v^2 / 2 makes a power of v of it;
+ *   - in d there are two such roots, sqrt(sin d) and sqrt(sin(d + turn)), the second as close
+ * behind the end as the turn is small; d = turn sinh^2(s), d + turn = turn cosh^2(s) undoes both.
+ * Functions are even in y (cosines) or odd (sines): a quarter of the sphere serves, and the matrix
+ * falls into two blocks.  What is left is a product of two tall matrices, done in blocks of nodes,
+ * each sum in the order of the nodes. */
+#include "basis/hsh_overlap.h"
+
+#include <string.h>
+
+#include "core/alloc.h"
+#include "core/context.h"
+#include "core/numerics.h"
+#include "math/quadrature.h"
+
+enum { BLOCK = 32 }; /* nodes at a time, a multiple of 4 */
+
+/* A turn smaller than this is not told from none by any double of the matrix. */
+static const double SMALLEST_TURN = 0x1p-60;
+
+/* The functions of one parity in y, and their sums. */
+typedef struct {
+    size_t  count;
+    size_t *index;        /* in the basis                          */
+    double *left, *right; /* BLOCK rows of count: weighted, turned */
+    double *sum;          /* count * count                         */
+} parity_block;
+
+typedef struct {
+    parity_block even, odd;
+    size_t       count;       /* of the basis                */
+    double      *values;      /* count                       */
+    double      *node[2];     /* d: nodes and weights in s   */
+    double      *psi_node[2]; /* psi: the same in v          */
+    int          d_nodes, psi_nodes;
+} overlap;
+
+double assay_hsh_mirror_sign(const assay_basis *hsh, size_t i)
+{
+    int l = 0, m = 0;
+    assay_basis_function(hsh, i, &l, &m);
+    return ((m & 1) != 0) == (m > 0) && m ? -1.0 : 1.0;
+}
+
+static bool allocate_block(assay_context *context, size_t count, parity_block *block)
+{
+    block->count = count;
+    block->index = assay_allocate(context, count, sizeof *block->index);
+    block->left  = assay_allocate(context, BLOCK * count, sizeof(double));
+    block->right = assay_allocate(context, BLOCK * count, sizeof(double));
+    block->sum   = assay_allocate(context, count * count, sizeof(double));
+    return block->index && block->left && block->right && block->sum;
+}
+
+static void release_block(assay_context *context, parity_block *block)
+{
+    assay_release(context, block->index);
+    assay_release(context, block->left);
+    assay_release(context, block->right);
+    assay_release(context, block->sum);
+}
+
+static void release(assay_context *context, overlap *o)
+{
+    release_block(context, &o->even);
+    release_block(context, &o->odd);
+    assay_release(context, o->values);
+    for (int i = 0; i < 2; i++) {
+        assay_release(context, o->node[i]);
+        assay_release(context, o->psi_node[i]);
+    }
+}
+
+static assay_status allocate(assay_context *context, const assay_basis *hsh, int d_nodes,
+                             int psi_nodes, overlap *o)
+{
+    const size_t n = (size_t)assay_basis_order(hsh);
+    *o             = (overlap){.count = n * n, .d_nodes = d_nodes, .psi_nodes = psi_nodes};
+    bool have      = allocate_block(context, n * (n + 1) / 2, &o->even);
+    have           = allocate_block(context, n * (n - 1) / 2, &o->odd) && have;
+    o->values      = assay_allocate(context, o->count, sizeof(double));
+    for (int i = 0; i < 2; i++) {
+        o->node[i]     = assay_allocate(context, (size_t)d_nodes, sizeof(double));
+        o->psi_node[i] = assay_allocate(context, (size_t)psi_nodes, sizeof(double));
+        have           = have && o->node[i] && o->psi_node[i];
+    }
+    if (!have || !o->values) {
+        release(context, o);
+        return assay_fail_memory(context, "the overlap of hemispherical harmonics");
+    }
+    size_t even = 0, odd = 0;
+    for (size_t i = 0; i < o->count; i++) {
+        int l = 0, m = 0;
+        assay_basis_function(hsh, i, &l, &m);
+        if (m < 0) {
+            o->odd.index[odd++] = i;
+        } else {
+            o->even.index[even++] = i;
+        }
+    }
+    return ASSAY_OK;
+}
+
+static void scatter(const parity_block *block, const double *values, double weight, double *rows,
+                    size_t row)
+{
+    for (size_t i = 0; i < block->count; i++) {
+        rows[row * block->count + i] = weight * values[block->index[i]];
+    }
+}
+
+/* sum += left' right over a whole block. */
+static void accumulate(parity_block *block)
+{
+    const size_t n = block->count;
+    for (size_t i = 0; i < n; i++) {
+        double *restrict sum = block->sum + i * n;
+        for (size_t q = 0; q < BLOCK; q += 4) {
+            const double *a  = block->left + q * n + i;
+            const double *b  = block->right + q * n;
+            const double  a0 = a[0], a1 = a[n], a2 = a[2 * n], a3 = a[3 * n];
+            for (size_t j = 0; j < n; j++) {
+                sum[j] += (a0 * b[j] + a1 * b[n + j]) + (a2 * b[2 * n + j] + a3 * b[3 * n + j]);
+            }
+        }
+    }
+}
+
+static void flush(overlap *o, size_t filled)
+{
+    parity_block *blocks[2] = {&o->even, &o->odd};
+    for (int k = 0; k < 2; k++) {
+        const size_t n = blocks[k]->count, rest = (BLOCK - filled) * n * sizeof(double);
+        memset(blocks[k]->left + filled * n, 0, rest);
+        memset(blocks[k]->right + filled * n, 0, rest);
+        accumulate(blocks[k]);
+    }
+}
+
+/* Nodes enough for order n; s_range: of the variable s. */
+static int psi_nodes_for(int order) { return 2 * order + 24; }
+static int d_nodes_for(int order, double s_range)
+{
+    return (int)((2.0 * order + 24.0) * (1.0 + 0.5 * s_range));
+}
+
+static double asinh_of(double x) { return assay_log(x + sqrt(x * x + 1.0)); }
+
+/* sinh(s), s >= 0. */
+static double sinh_of(double s)
+{
+    const double e = assay_expm1(s);
+    return 0.5 * (e + e / (1.0 + e));
+}
+
+static assay_status integrate(const assay_basis *hsh, double turn, double scale, overlap *o)
+{
+    size_t filled = 0;
+    for (int k = 0; k < o->d_nodes; k++) {
+        const double       sh = sinh_of(o->node[0][k]), ch = sqrt(1.0 + sh * sh);
+        const double       d = scale * sh * sh, d_weight = o->node[1][k] * 2.0 * scale * sh * ch;
+        const assay_sincos here = assay_sincos_radians(d), there = assay_sincos_radians(d + turn);
+        for (int j = 0; j < o->psi_nodes; j++) {
+            const double       v   = o->psi_node[0][j];
+            const assay_sincos psi = assay_sincos_radians(0.5 * ASSAY_PI * v * v);
+            const double       c = psi.sin, y = psi.cos;
+            const double       weight = 2.0 * d_weight * c * ASSAY_PI * v * o->psi_node[1][j];
+            const assay_vec3   w      = {c * here.cos, y, c * here.sin};
+            const assay_vec3   u      = {c * there.cos, y, c * there.sin};
+            assay_status       status = assay_basis_evaluate(hsh, w, o->values);
+            if (status) {
+                return status;
+            }
+            scatter(&o->even, o->values, weight, o->even.left, filled);
+            scatter(&o->odd, o->values, weight, o->odd.left, filled);
+            status = assay_basis_evaluate(hsh, u, o->values);
+            if (status) {
+                return status;
+            }
+            scatter(&o->even, o->values, 1.0, o->even.right, filled);
+            scatter(&o->odd, o->values, 1.0, o->odd.right, filled);
+            if (++filled == BLOCK) {
+                flush(o, filled);
+                filled = 0;
+            }
+        }
+    }
+    if (filled) {
+        flush(o, filled);
+    }
+    return ASSAY_OK;
+}
+
+static void gather(const parity_block *block, size_t count, double *matrix_out)
+{
+    for (size_t i = 0; i < block->count; i++) {
+        for (size_t j = 0; j < block->count; j++) {
+            matrix_out[block->index[i] * count + block->index[j]] =
+                block->sum[i * block->count + j];
+        }
+    }
+}
+
+assay_status assay_hsh_overlap(const assay_basis *hsh, assay_context *context, double turn,
+                               double width, double *matrix_out)
+{
+    const size_t count = assay_basis_count(hsh);
+    if (!(width > 0.0)) {
+        memset(matrix_out, 0, count * count * sizeof *matrix_out);
+        return ASSAY_OK;
+    }
+    /* Without a turn the second root is the first, and any scale undoes it. */
+    const double scale = turn == 0.0 ? width : fmax(turn, SMALLEST_TURN);
+    const double range = asinh_of(sqrt(width / scale));
+    const int    order = assay_basis_order(hsh);
+    overlap      o;
+    assay_status status =
+        allocate(context, hsh, d_nodes_for(order, range), psi_nodes_for(order), &o);
+    if (status) {
+        return status;
+    }
+    assay_gauss_legendre_on(0.0, range, o.d_nodes, o.node[0], o.node[1]);
+    assay_gauss_legendre_on(0.0, 1.0, o.psi_nodes, o.psi_node[0], o.psi_node[1]);
+    status = integrate(hsh, turn, scale, &o);
+    if (!status) {
+        memset(matrix_out, 0, count * count * sizeof *matrix_out);
+        gather(&o.even, count, matrix_out);
+        gather(&o.odd, count, matrix_out);
+    }
+    release(context, &o);
+    return status;
+}
