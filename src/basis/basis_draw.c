@@ -21,13 +21,14 @@ typedef struct {
     assay_triangle_raster raster;
     assay_vec3            right, up, forward; /* of the picture; forward towards the eye */
     assay_vec3            light;
-    double                scale, centre; /* pixels a unit; of the middle            */
+    double                scale;       /* pixels a unit                           */
+    double                column, row; /* of the origin, pixels */
 } drawing;
 
 static assay_vec3 to_pixels(const drawing *d, assay_vec3 p)
 {
-    return (assay_vec3){d->centre + d->scale * vec3_dot(p, d->right),
-                        d->centre - d->scale * vec3_dot(p, d->up), vec3_dot(p, d->forward)};
+    return (assay_vec3){d->column + d->scale * vec3_dot(p, d->right),
+                        d->row - d->scale * vec3_dot(p, d->up), vec3_dot(p, d->forward)};
 }
 
 /* Both sides of a surface look the same; light comes from over the eye's left shoulder. */
@@ -135,7 +136,8 @@ static void add_lobes(drawing *d, bool hemisphere, const double *radius)
     }
 }
 
-static void look(drawing *d, int side)
+/* The origin of a hemisphere is below the middle: there is nothing to be seen under it. */
+static void look(drawing *d, int side, bool hemisphere)
 {
     const assay_sincos azimuth   = assay_sincos_turns(33.0 / 360.0);
     const assay_sincos elevation = assay_sincos_turns(24.0 / 360.0);
@@ -146,7 +148,8 @@ static void look(drawing *d, int side)
     d->light  = vec3_add(d->forward, vec3_add(vec3_scale(d->up, 0.7), vec3_scale(d->right, -0.5)));
     d->light  = vec3_scale(d->light, 1.0 / sqrt(vec3_dot(d->light, d->light)));
     d->scale  = 0.5 * side / REACH;
-    d->centre = 0.5 * side;
+    d->column = 0.5 * side;
+    d->row    = (hemisphere ? 0.62 : 0.5) * side;
 }
 
 /* Averages of SAMPLES * SAMPLES pixels. */
@@ -226,7 +229,7 @@ assay_status assay_basis_draw(assay_context *context, const assay_basis *basis, 
         status = sample(basis, i, hemisphere, values, radius);
     }
     if (status == ASSAY_OK) {
-        look(&d, SAMPLES * size);
+        look(&d, SAMPLES * size, hemisphere);
         add_axes(&d);
         add_lobes(&d, hemisphere, radius);
         status = make_image(context, &d, size, image_out);

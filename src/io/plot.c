@@ -71,7 +71,7 @@ static void draw_x_ticks(const frame *f)
     for (double i = first; i * step <= f->plot->x_max + 1e-9 * step; i += 1.0) {
         const double x = across(f, i * step);
         char         text[40];
-        snprintf(text, sizeof text, "%.*f", decimals, i * step);
+        snprintf(text, sizeof text, "%.*f", decimals, i * step + 0.0);
         assay_canvas_stroke(&f->canvas, x, f->top, x, f->bottom, 1.0, GRID);
         assay_canvas_text(&f->canvas, x - 0.5 * assay_text_width(f->letter, text),
                           f->bottom + 2.0 * f->letter, f->letter, false, INK, text);

@@ -3,7 +3,7 @@
 #define ASSAY_IO_STROKE_FONT_H
 
 /* Heights in the font's units: the baseline, the top of capitals, of small letters. */
-enum { STROKE_BASELINE = 3, STROKE_CAPITAL = 11, STROKE_GAP = 2, STROKE_BLANK = 3 };
+enum { STROKE_BASELINE = 3, STROKE_CAPITAL = 11, STROKE_GAP = 3, STROKE_BLANK = 3 };
 
 /* Strokes of a character: pairs of hexadecimal digits x, y (y upwards), strokes apart by blanks.
  * "" for a blank and for what the font does not have. */
