@@ -41,12 +41,13 @@ typedef struct {
     const assay_lobe     *lobe;
     const assay_analysis *analysis;
     size_t                count;
-    assay_sincos          turn;            /* of the lobe's azimuth                    */
-    double                gap;             /* between the last alpha and pi/2          */
-    angle_node           *psi, *alpha;     /* MOST_NODES                             */
-    double               *node, *weight;   /* MOST_NODES: of Gauss on [-1, 1]      */
-    double               *functions, *sum; /* count                              */
-    double                energy;
+    assay_sincos          turn;                  /* of the lobe's azimuth                    */
+    double                gap;                   /* between the last alpha and pi/2          */
+    angle_node           *psi, *alpha;           /* MOST_NODES                             */
+    double               *node, *weight;         /* MOST_NODES: of Gauss on [-1, 1]      */
+    double               *functions, *row, *sum; /* count */
+    double                row_energy, energy;
+    assay_vec3            outgoing;
 } measure;
 
 /* Angles over [-pi/2, pi/2 - gap]. */
@@ -72,7 +73,7 @@ static assay_status add_node(measure *m, const angle_node *psi, const angle_node
     const double     x = psi->cos * alpha->sin, y = psi->sin;
     const assay_vec3 d  = {x * m->turn.cos - y * m->turn.sin, x * m->turn.sin + y * m->turn.cos,
                            psi->cos * alpha->cos};
-    const double     f  = assay_lobe_at(m->lobe, assay_lobe_outgoing(m->lobe), d);
+    const double     f  = assay_lobe_at(m->lobe, m->outgoing, d);
     const double     dw = psi->cos * psi->weight * alpha->weight;
     if (f == 0.0) {
         return ASSAY_OK;
@@ -82,9 +83,30 @@ static assay_status add_node(measure *m, const angle_node *psi, const angle_node
         return status;
     }
     for (size_t k = 0; k < m->count; k++) {
-        m->sum[k] += dw * f * m->functions[k];
+        m->row[k] += dw * f * m->functions[k];
     }
-    m->energy += dw * f * f * (assay_basis_kind_of(m->basis) == ASSAY_BASIS_MAKHOTKIN ? d.z : 1.0);
+    m->row_energy +=
+        dw * f * f * (assay_basis_kind_of(m->basis) == ASSAY_BASIS_MAKHOTKIN ? d.z : 1.0);
+    return ASSAY_OK;
+}
+
+/* Sums of rows, then their sum: the rounding of a thousand terms, not of a million. */
+static assay_status add_row(measure *m, int nodes, const angle_node *psi)
+{
+    m->row_energy = 0.0;
+    for (size_t k = 0; k < m->count; k++) {
+        m->row[k] = 0.0;
+    }
+    for (int j = 0; j < nodes; j++) {
+        const assay_status status = add_node(m, psi, &m->alpha[j]);
+        if (status != ASSAY_OK) {
+            return status;
+        }
+    }
+    m->energy += m->row_energy;
+    for (size_t k = 0; k < m->count; k++) {
+        m->sum[k] += m->row[k];
+    }
     return ASSAY_OK;
 }
 
@@ -100,9 +122,7 @@ static assay_status integrate(measure *m, int nodes, double *accuracy_out)
         m->sum[k] = 0.0;
     }
     for (int i = 0; i < nodes && status == ASSAY_OK; i++) {
-        for (int j = 0; j < nodes && status == ASSAY_OK; j++) {
-            status = add_node(m, &m->psi[i], &m->alpha[j]);
-        }
+        status = add_row(m, nodes, &m->psi[i]);
     }
     const int order = assay_basis_order(m->basis);
     for (int n = 0; n < order; n++) {
@@ -178,7 +198,9 @@ static void prepare(measure *m, const assay_lobe *lobe, double *work)
     m->node      = work;
     m->weight    = work + MOST_NODES;
     m->functions = work + 2 * MOST_NODES;
-    m->sum       = m->functions + m->count;
+    m->row       = m->functions + m->count;
+    m->sum       = m->row + m->count;
+    m->outgoing  = assay_lobe_outgoing(lobe);
 }
 
 assay_status assay_basis_accuracy(const assay_basis *basis, assay_context *context,
@@ -192,7 +214,7 @@ assay_status assay_basis_accuracy(const assay_basis *basis, assay_context *conte
     measure         m        = {.basis = basis, .count = count};
     assay_analysis *analysis = NULL;
     assay_status    status   = assay_analysis_create(context, basis, false, &analysis);
-    double *work = assay_allocate(context, 2 * MOST_NODES + 2 * count + 2 * order, sizeof *work);
+    double *work = assay_allocate(context, 2 * MOST_NODES + 3 * count + 2 * order, sizeof *work);
     angle_node *angles = assay_allocate(context, 2 * MOST_NODES, sizeof *angles);
     if (status == ASSAY_OK && (!work || !angles)) {
         status = assay_fail_memory(context, "an accuracy");

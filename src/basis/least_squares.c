@@ -188,21 +188,21 @@ static assay_status fill(assay_least_squares *fit, const assay_basis *basis, dou
 assay_status assay_least_squares_create(assay_context *context, const assay_basis *basis,
                                         bool solve, assay_least_squares **fit_out)
 {
-    const size_t         n      = (size_t)assay_basis_order(basis);
-    double              *work   = assay_allocate(context, (n + 1) * (5 + n * n), sizeof *work);
-    assay_least_squares *fit    = assay_allocate(context, 1, sizeof *fit);
-    assay_status         status = fit && work ? ASSAY_OK : assay_fail_memory(context, "a fit");
-    if (status == ASSAY_OK) {
-        fit->context  = context;
-        fit->order    = (int)n;
-        fit->first    = assay_allocate(context, n, sizeof *fit->first);
-        fit->centre   = assay_allocate(context, n * n, sizeof *fit->centre);
-        fit->slope    = assay_allocate(context, n * n, sizeof *fit->slope);
-        fit->triangle = assay_allocate(context, n * n * n, sizeof *fit->triangle);
-        status        = fit->first && fit->centre && fit->slope && fit->triangle
-                            ? fill(fit, basis, work)
-                            : assay_fail_memory(context, "a fit");
+    const size_t         n   = (size_t)assay_basis_order(basis);
+    assay_least_squares *fit = assay_allocate(context, 1, sizeof *fit);
+    if (!fit) {
+        return assay_fail_memory(context, "a fit");
     }
+    double *work        = assay_allocate(context, (n + 1) * (5 + n * n), sizeof *work);
+    fit->context        = context;
+    fit->order          = (int)n;
+    fit->first          = assay_allocate(context, n, sizeof *fit->first);
+    fit->centre         = assay_allocate(context, n * n, sizeof *fit->centre);
+    fit->slope          = assay_allocate(context, n * n, sizeof *fit->slope);
+    fit->triangle       = assay_allocate(context, n * n * n, sizeof *fit->triangle);
+    assay_status status = work && fit->first && fit->centre && fit->slope && fit->triangle
+                              ? fill(fit, basis, work)
+                              : assay_fail_memory(context, "a fit");
     if (status == ASSAY_OK && solve && !(fit->condition <= ASSAY_LEAST_SQUARES_CONDITION)) {
         status = assay_fail(context, ASSAY_ERR_DOMAIN,
                             "least squares by SH of order %d on the hemisphere are singular to "
