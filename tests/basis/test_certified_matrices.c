@@ -58,9 +58,10 @@ static double sparse_entry(assay_sparse_view v, size_t row, size_t column)
     return 0.0;
 }
 
-/* Worst difference of C (or of C transposed, to_sh) from a table. */
+/* Worst difference of C (or of C transposed, to_sh) from a table; swapped: with the bands of rows
+ * and columns taken for one another. */
 static double judge_conversion(assay_context *context, const char *name, int hsh_order,
-                               int sh_order, bool to_sh)
+                               int sh_order, bool to_sh, bool swapped)
 {
     reference_table *table = reference_table_read(name);
     assay_basis     *hsh   = make_basis(context, ASSAY_BASIS_HSH, hsh_order);
@@ -72,7 +73,7 @@ static double judge_conversion(assay_context *context, const char *name, int hsh
     const assay_sparse_view view = assay_sparse_entries(c);
     for (size_t i = 0; i < table->rows; i++) {
         const double *key = reference_table_keys(table, i);
-        const int     m = (int)key[0], l = (int)key[1], k = (int)key[2];
+        const int     m = (int)key[0], l = (int)key[1 + swapped], k = (int)key[2 - swapped];
         const size_t  row = (size_t)(l * l + l + m), column = (size_t)(k * k + k + m);
         const double  entry =
             to_sh ? sparse_entry(view, column, row) : sparse_entry(view, row, column);
@@ -87,12 +88,13 @@ static double judge_conversion(assay_context *context, const char *name, int hsh
 
 static void conversion_is_right(void **state)
 {
-    const double there = judge_conversion(*state, "conversion", 10, 16, false);
-    const double back  = judge_conversion(*state, "conversion", 10, 16, true);
-    const double large = judge_conversion(*state, "conversion_bands", 33, 33, false);
+    const double there = judge_conversion(*state, "conversion", 10, 16, false, false);
+    const double back  = judge_conversion(*state, "conversion", 10, 16, true, false);
+    const double large = judge_conversion(*state, "conversion_bands", 33, 33, false, false);
     report("C, order 10 from order 16", there);
     report("C transposed", back);
     report("C, order 33", large);
+    assert_true(judge_conversion(*state, "conversion_bands", 33, 33, false, true) > 0.1);
     assert_true(there <= TOLERANCE && back <= TOLERANCE && large <= TOLERANCE);
 }
 
