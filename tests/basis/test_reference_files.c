@@ -28,11 +28,11 @@ static const shape shapes[] = {
      10 * 16 + 2 * (9 * 15 + 8 * 14 + 7 * 13 + 6 * 12 + 5 * 11 + 4 * 10 + 3 * 9 + 2 * 8 + 1 * 7)},
     {"conversion_bands", 3, 2, 33 * 33 + 32 * 32 + 31 * 31 + 17 * 17 + 2 * 2 + 1},
     {"digon_order10", 2, 100, 100},
-    {"digon_order6", 2, 36, 6 * 36},
+    {"digon_order6", 2, 36, 8 * 36},
     {"gauss_legendre", 2, 4, 2 + 3 + 5 + 16 + 64},
     {"hsh_gradients", 4, 17 * 17, 3 * 12},
     {"hsh_rotation_order10", 2, 100, 100},
-    {"hsh_rotation_order6", 2, 36, 6 * 36},
+    {"hsh_rotation_order6", 2, 36, 8 * 36},
     {"hsh_values", 3, 33 * 33, 40},
     {"makhotkin_sqrt_values", 3, 17 * 17, 18},
     {"makhotkin_values", 3, 17 * 17, 18},
@@ -111,6 +111,28 @@ static void tables_have_their_shapes(void **state)
     (void)state;
 }
 
+/* Every header says what, how, how sharp, in which convention, and by what it was made. */
+static void headers_say_where_from(void **state)
+{
+    static const char *const lines[] = {
+        "\n# content: ", "\n# command: make ref", "\n# method: ", "\n# precision: ",
+        "\n# radius: ",  "\n# convention: ",      "\n# values: ", "\n# generator: refdata/gen/"};
+    for (size_t i = 0; i < SHAPE_COUNT; i++) {
+        char   path[128], generator[64] = "";
+        size_t size;
+        snprintf(path, sizeof path, "refdata/basis/%s.txt", shapes[i].name);
+        char *text = reference_file_bytes(path, &size);
+        for (size_t k = 0; k < sizeof lines / sizeof lines[0]; k++) {
+            assert_non_null(strstr(text, lines[k]));
+        }
+        assert_int_equal(sscanf(strstr(text, "\n# generator: "), "\n# generator: %63s", generator),
+                         1);
+        free(text);
+        free(reference_file_bytes(generator, &size));
+    }
+    (void)state;
+}
+
 #define HEADER "# table: t\n# keys: a b\n# values: c\n# rows: 2\n# columns: 3\n"
 
 static void broken_tables_are_refused(void **state)
@@ -155,6 +177,7 @@ int main(void)
         cmocka_unit_test(manifest_holds),
         cmocka_unit_test(folder_holds_nothing_else),
         cmocka_unit_test(tables_have_their_shapes),
+        cmocka_unit_test(headers_say_where_from),
         cmocka_unit_test(broken_tables_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
