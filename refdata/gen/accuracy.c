@@ -129,15 +129,3 @@ void accuracy_write(ref_table *table, double theta, ref_enclosure enclose, void 
         ref_end_row(table);
     }
 }
-
-double accuracy_radians(slong degrees)
-{
-    arb_t t;
-    arb_init(t);
-    arb_const_pi(t, 256);
-    arb_mul_si(t, t, degrees, 256);
-    arb_div_si(t, t, 180, 256);
-    const double nearest = arf_get_d(arb_midref(t), ARF_RND_NEAR);
-    arb_clear(t);
-    return nearest;
-}

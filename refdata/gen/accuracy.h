@@ -32,7 +32,4 @@ void accuracy_finish(arb_ptr out, accuracy *a, const arb_t error, slong precisio
 /* Writes the rows of one lobe. */
 void accuracy_write(ref_table *table, double theta, ref_enclosure enclose, void *user);
 
-/* The double nearest to a whole number of degrees, rad. */
-double accuracy_radians(slong degrees);
-
 #endif

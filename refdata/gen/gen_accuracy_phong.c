@@ -126,7 +126,7 @@ int main(int argc, char **argv)
              .columns = ACCURACY_COLUMNS};
     ref_table *table = ref_create(argc > 1 ? argv[1] : ".", &header);
     for (int i = 0; i < 4; i++) {
-        task job = {accuracy_radians(degrees[i])};
+        task job = {ref_radians(degrees[i])};
         accuracy_write(table, job.theta, enclose, &job);
     }
     ref_finish(table);

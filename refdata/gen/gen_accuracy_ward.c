@@ -19,6 +19,7 @@
 #include <stdlib.h>
 
 #include "accuracy.h"
+#include "bernstein.h"
 
 typedef struct {
     double theta;
@@ -133,31 +134,14 @@ static void lobe_at(acb_t out, const lobe *f, const ring *r, const acb_t cosine,
     acb_clear(h);
 }
 
-/* s: piece i of n of [-1, 1], or of the upper half of the ellipse with the half-axes' sum rho. */
+/* rho = 1: the segment itself. */
 static void piece_of_u(acb_t s, double rho, slong i, slong n, slong precision)
 {
-    arb_zero(acb_imagref(s));
     if (rho == 1.0) {
-        arb_set_si(acb_realref(s), 2 * i + 1 - n);
-        arb_add_error_2exp_si(acb_realref(s), 0);
-        arb_div_si(acb_realref(s), acb_realref(s), n, precision);
-        return;
+        bernstein_segment_piece(s, i, n, precision);
+    } else {
+        bernstein_ellipse_piece(s, rho, i, n, precision);
     }
-    acb_t other;
-    arb_t r;
-    acb_init(other);
-    arb_init(r);
-    arb_set_si(acb_realref(s), 2 * i + 1);
-    arb_add_error_2exp_si(acb_realref(s), 0);
-    arb_div_si(acb_realref(s), acb_realref(s), 2 * n, precision);
-    acb_exp_pi_i(s, s, precision);
-    arb_set_d(r, rho);
-    acb_mul_arb(s, s, r, precision);
-    acb_inv(other, s, precision);
-    acb_add(s, s, other, precision);
-    acb_mul_2exp_si(s, s, -1);
-    acb_clear(other);
-    arb_clear(r);
 }
 
 /* Cosine of p = pi (i + [0, 1]) / n + i eta. */
@@ -466,7 +450,7 @@ int main(int argc, char **argv)
              .columns = ACCURACY_COLUMNS};
     ref_table *table = ref_create(argc > 1 ? argv[1] : ".", &header);
     for (int i = 0; i < 3; i++) {
-        task job = {accuracy_radians(degrees[i])};
+        task job = {ref_radians(degrees[i])};
         accuracy_write(table, job.theta, enclose, &job);
     }
     ref_finish(table);

@@ -153,19 +153,6 @@ static void check_first(double beta)
     _arb_vec_clear(matrices, 2);
 }
 
-/* The double nearest to this many degrees. */
-static double radians(slong degrees)
-{
-    arb_t t;
-    arb_init(t);
-    arb_const_pi(t, 256);
-    arb_mul_si(t, t, degrees, 256);
-    arb_div_si(t, t, 180, 256);
-    const double nearest = arf_get_d(arb_midref(t), ARF_RND_NEAR);
-    arb_clear(t);
-    return nearest;
-}
-
 static ref_table *open_table(const char *folder, int turned, slong order, slong angles)
 {
     ref_header header = {.generator = "gen_digon"};
@@ -211,7 +198,7 @@ static void write_tables(const char *folder, slong order, const slong *degrees, 
     ref_table  *digon   = open_table(folder, 0, order, angles);
     ref_table  *turned  = open_table(folder, 1, order, angles);
     for (slong k = 0; k < angles; k++) {
-        task job = {radians(degrees[k]), order};
+        task job = {ref_radians(degrees[k]), order};
         ref_round_all(enclose_matrices, &job, 2 * n * n, 0, numbers);
         write_matrix(digon, job.beta, numbers, n);
         write_matrix(turned, job.beta, numbers + n * n, n);

@@ -123,8 +123,8 @@ static void enclose_gradients(void *user, arb_ptr out, slong count, slong precis
     basis *b = basis_create(job->kind, ORDER, precision);
     for (slong l = 0; l < ORDER; l++) {
         for (slong m = -l; m <= l; m++) {
-            const slong   k   = labs(m);
-            const acb_ptr own = m < 0 ? sines : cosines, other = m < 0 ? cosines : sines;
+            const slong      k   = labs(m);
+            const acb_srcptr own = m < 0 ? sines : cosines, other = m < 0 ? cosines : sines;
             zonal_part(g, slope, b, job->kind, l, k, n + 2, precision);
             arb_mul(gradient + 2, slope, acb_realref(own + k), precision);
             arb_mul_si(g, g, k, precision);

@@ -23,6 +23,7 @@
 #include <arb_hypgeom.h>
 #include <math.h>
 
+#include "bernstein.h"
 #include "ref.h"
 
 static void point_init(lune_point *p)
@@ -130,33 +131,6 @@ static void to_square(acb_t out, const acb_t s, slong precision)
     arb_clear(quarter);
 }
 
-/* Piece i of n of the upper half of the ellipse's boundary; the lower half has the conjugates. */
-static void ellipse_piece(acb_t out, double rho, slong i, slong n, slong precision)
-{
-    acb_t turn;
-    acb_init(turn);
-    arb_set_si(acb_realref(turn), 2 * i + 1);
-    arb_add_error_2exp_si(acb_realref(turn), 0);
-    arb_div_si(acb_realref(turn), acb_realref(turn), 2 * n, precision);
-    acb_exp_pi_i(turn, turn, precision);
-    arb_set_d(acb_realref(out), rho);
-    arb_zero(acb_imagref(out));
-    acb_mul(out, out, turn, precision);
-    acb_inv(turn, out, precision);
-    acb_add(out, out, turn, precision);
-    acb_mul_2exp_si(out, out, -1);
-    acb_clear(turn);
-}
-
-/* Piece i of n of [-1, 1]. */
-static void segment_piece(acb_t out, slong i, slong n, slong precision)
-{
-    arb_set_si(acb_realref(out), 2 * i + 1 - n);
-    arb_add_error_2exp_si(acb_realref(out), 0);
-    arb_div_si(acb_realref(out), acb_realref(out), n, precision);
-    arb_zero(acb_imagref(out));
-}
-
 /* Bound with one variable on the ellipse, the other real; not finite where it is too large. */
 static void bound_on_ellipse(arb_t out, const lune_integrand *f, const arb_t beta, double rho,
                              int w_is_complex, slong pieces)
@@ -173,10 +147,10 @@ static void bound_on_ellipse(arb_t out, const lune_integrand *f, const arb_t bet
     arb_init(size);
     arb_zero(out);
     for (slong i = 0; i < pieces && arb_is_finite(out); i++) {
-        ellipse_piece(s, rho, i, pieces, precision);
+        bernstein_ellipse_piece(s, rho, i, pieces, precision);
         to_square(w_is_complex ? w : v, s, precision);
         for (slong j = 0; j < segments && arb_is_finite(out); j++) {
-            segment_piece(s, j, segments, precision);
+            bernstein_segment_piece(s, j, segments, precision);
             to_square(w_is_complex ? v : w, s, precision);
             point_at(&p, beta, w, v, precision);
             f->bound(f->user, bound, &p, precision);

@@ -48,6 +48,18 @@ void ref_check_same(const arb_t a, const arb_t b, const char *what)
     }
 }
 
+double ref_radians(slong degrees)
+{
+    arb_t t;
+    arb_init(t);
+    arb_const_pi(t, 256);
+    arb_mul_si(t, t, degrees, 256);
+    arb_div_si(t, t, 180, 256);
+    const double nearest = arf_get_d(arb_midref(t), ARF_RND_NEAR);
+    arb_clear(t);
+    return nearest;
+}
+
 /* False where the enclosure is too wide to tell. */
 static int round_one(const arb_t x, double *nearest, int *exact_zero)
 {

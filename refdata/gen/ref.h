@@ -57,6 +57,9 @@ void ref_fail(const char *format, ...) __attribute__((format(printf, 1, 2), nore
 /* Ends the program unless two enclosures of one number, had in two ways, overlap. */
 void ref_check_same(const arb_t a, const arb_t b, const char *what);
 
+/* The double nearest to a whole number of degrees, rad. */
+double ref_radians(slong degrees);
+
 void *ref_allocate(size_t count, size_t size);
 
 #endif
