@@ -74,7 +74,9 @@ ASSAY_API assay_convention assay_basis_convention_of(const assay_basis *basis);
 ASSAY_API int              assay_basis_order(const assay_basis *basis);
 /* Number of functions. */
 ASSAY_API size_t assay_basis_count(const assay_basis *basis);
-/* Band and azimuthal number of function i < count.  (Zernike: radial degree and azimuthal.) */
+/* Band and azimuthal number of function i < count (Zernike: radial degree and azimuthal), ascending
+ * in l, then in m, but for the order KONTKANEN.  So i is l*l + l + m, for ZERNIKE and ESH l*(l +
+ * 1)/2 + (l + m)/2. */
 ASSAY_API void assay_basis_function(const assay_basis *basis, size_t i, int *l_out, int *m_out);
 
 /* ---- values ---- */
@@ -156,8 +158,8 @@ ASSAY_API assay_status assay_sh_rotation(const assay_basis *sh, const double rot
 ASSAY_API assay_status assay_sh_rotate(const assay_basis *sh, const double *matrix, int channels,
                                        const double *coefficients, double *rotated_out);
 
-/* Rotation about +z in closed form, any basis whose functions come in pairs cos(m phi), sin(m phi)
- * (all but the order KONTKANEN): in place.  rad. */
+/* Rotation about +z in closed form, any basis and convention: in place.  rad; good for angles of
+ * many turns, too.  Errors: ARGUMENT (channels < 1), DOMAIN (angle not finite). */
 ASSAY_API assay_status assay_basis_rotate_z(const assay_basis *basis, double angle, int channels,
                                             double *coefficients);
 

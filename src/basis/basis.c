@@ -49,15 +49,18 @@ bool assay_basis_kind_is_hemispherical(assay_basis_kind kind) { return kind != A
 static size_t kontkanen_index(size_t common)
 {
     static const unsigned char place[9] = {0, 2, 3, 1, 6, 5, 7, 4, 8};
+    assert(common < sizeof place);
     return place[common];
 }
 
 size_t basis_index(const assay_basis *basis, int l, int m)
 {
     if (basis_is_even(basis->kind)) {
-        return (size_t)(l * (l + 1) / 2 + (l + m) / 2);
+        const int even = l * (l + 1) / 2 + (l + m) / 2;
+        return (size_t)even;
     }
-    const size_t common = (size_t)(l * l + l + m);
+    const int    place  = l * l + l + m;
+    const size_t common = (size_t)place;
     return basis->convention == ASSAY_CONVENTION_KONTKANEN ? kontkanen_index(common) : common;
 }
 
@@ -101,8 +104,8 @@ static size_t arrange(assay_basis *basis)
     for (int l = 0; l < n; l++) {
         for (int m = -l; m <= l; m += basis_is_even(basis->kind) ? 2 : 1) {
             const size_t i = basis_index(basis, l, m);
-            basis->l[i]    = (signed char)l;
-            basis->m[i]    = (signed char)m;
+            basis->l[i]    = (short)l;
+            basis->m[i]    = (short)m;
             basis->count++;
         }
     }
@@ -123,6 +126,13 @@ static void place_steps(assay_basis *basis)
     }
 }
 
+/* ASSAY_ISA=sse2 forbids wide vectors, for tests. */
+static bool may_be_wide(const assay_context *context)
+{
+    const char *isa = assay_context_isa(context);
+    return basis_has_wide() && (!isa || strcmp(isa, "sse2") != 0);
+}
+
 assay_status assay_basis_create(assay_context *context, assay_basis_kind kind, int order,
                                 assay_convention convention, assay_basis **basis_out)
 {
@@ -138,6 +148,7 @@ assay_status assay_basis_create(assay_context *context, assay_basis_kind kind, i
     basis->kind        = kind;
     basis->order       = order;
     basis->convention  = convention;
+    basis->wide        = may_be_wide(context);
     const size_t steps = arrange(basis);
     basis->step        = assay_allocate(context, steps, sizeof(basis_step));
     if (!basis->step) {

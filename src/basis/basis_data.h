@@ -25,10 +25,11 @@ struct assay_basis {
     assay_convention convention;
     int              order;
     size_t           count;
+    bool             wide;                         /* use basis_evaluate_wide */
     int              steps[ASSAY_BASIS_MAX_ORDER]; /* degrees of each m    */
     basis_step      *step;                         /* by m, then by degree */
-    signed char      l[ASSAY_BASIS_MAX_ORDER * ASSAY_BASIS_MAX_ORDER];
-    signed char      m[ASSAY_BASIS_MAX_ORDER * ASSAY_BASIS_MAX_ORDER];
+    short            l[ASSAY_BASIS_MAX_ORDER * ASSAY_BASIS_MAX_ORDER];
+    short            m[ASSAY_BASIS_MAX_ORDER * ASSAY_BASIS_MAX_ORDER];
 };
 
 /* Whether only l + m even is in the basis. */
@@ -57,5 +58,13 @@ void basis_constants(assay_basis *basis);
 
 /* ASSAY_OK or ASSAY_ERR_DOMAIN. */
 assay_status basis_check_direction(const assay_basis *basis, assay_vec3 direction);
+
+/* All functions at 1 ... BASIS_PAIR or BASIS_WIDE directions that pass the check. */
+enum { BASIS_PAIR = 2, BASIS_WIDE = 4 };
+void basis_evaluate_pair(const assay_basis *basis, size_t count, const assay_vec3 *directions,
+                         double *values);
+void basis_evaluate_wide(const assay_basis *basis, size_t count, const assay_vec3 *directions,
+                         double *values);
+bool basis_has_wide(void);
 
 #endif
