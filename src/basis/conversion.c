@@ -10,6 +10,7 @@
  * odd m the branch points t = +-i are far enough away that EXTRA nodes leave less than 1e-30.  (In
  * z itself there is a root z^(m/2) at the end, and the rule stalls near 1e-7.) */
 #include "assay/basis.h"
+#include "basis/basis_data.h"
 #include "basis/sparse.h"
 #include "core/alloc.h"
 #include "core/context.h"
@@ -81,14 +82,7 @@ static size_t mirror_index(const assay_basis *basis, size_t i)
 {
     int l = 0, m = 0;
     assay_basis_function(basis, i, &l, &m);
-    for (size_t j = (size_t)(l * l); m < 0; j++) {
-        int k = 0, n = 0;
-        assay_basis_function(basis, j, &k, &n);
-        if (n == -m) {
-            return j;
-        }
-    }
-    return i;
+    return m < 0 ? basis_index(basis, l, -m) : i;
 }
 
 static double integral(const node_values *v, size_t from_count, size_t i, size_t to_count, size_t j)
