@@ -49,15 +49,18 @@ bool assay_basis_kind_is_hemispherical(assay_basis_kind kind) { return kind != A
 static size_t kontkanen_index(size_t common)
 {
     static const unsigned char place[9] = {0, 2, 3, 1, 6, 5, 7, 4, 8};
+    assert(common < sizeof place);
     return place[common];
 }
 
 size_t basis_index(const assay_basis *basis, int l, int m)
 {
     if (basis_is_even(basis->kind)) {
-        return (size_t)(l * (l + 1) / 2 + (l + m) / 2);
+        const int even = l * (l + 1) / 2 + (l + m) / 2;
+        return (size_t)even;
     }
-    const size_t common = (size_t)(l * l + l + m);
+    const int    place  = l * l + l + m;
+    const size_t common = (size_t)place;
     return basis->convention == ASSAY_CONVENTION_KONTKANEN ? kontkanen_index(common) : common;
 }
 
@@ -91,7 +94,7 @@ static assay_status check_request(assay_context *context, assay_basis_kind kind,
 /* Orders and indices; returns the number of steps. */
 static size_t arrange(assay_basis *basis)
 {
-    const int stride = basis_stride(basis->kind);
+    const int stride = basis->kind == ASSAY_BASIS_ZERNIKE ? 2 : 1;
     const int n      = basis->order;
     size_t    steps  = 0;
     for (int m = 0; m < n; m++) {
@@ -101,25 +104,33 @@ static size_t arrange(assay_basis *basis)
     for (int l = 0; l < n; l++) {
         for (int m = -l; m <= l; m += basis_is_even(basis->kind) ? 2 : 1) {
             const size_t i = basis_index(basis, l, m);
-            basis->l[i]    = (signed char)l;
-            basis->m[i]    = (signed char)m;
+            basis->l[i]    = (short)l;
+            basis->m[i]    = (short)m;
             basis->count++;
         }
     }
     return steps;
 }
 
-static void place_steps(assay_basis *basis, basis_step *step)
+static void place_steps(assay_basis *basis)
 {
-    const int stride = basis_stride(basis->kind);
+    basis_step *step   = basis->step;
+    const int   stride = basis->kind == ASSAY_BASIS_ZERNIKE ? 2 : 1;
     for (int m = 0; m < basis->order; m++) {
         for (int k = 0; k < basis->steps[m]; k++, step++) {
             const int  l    = m + stride * k;
             const bool here = !basis_is_even(basis->kind) || (l + m) % 2 == 0;
-            step->plus      = here ? (int)basis_index(basis, l, m) : -1;
-            step->minus     = here && m > 0 ? (int)basis_index(basis, l, -m) : -1;
+            step->plus      = here ? (short)basis_index(basis, l, m) : -1;
+            step->minus     = here && m > 0 ? (short)basis_index(basis, l, -m) : -1;
         }
     }
+}
+
+/* ASSAY_ISA=sse2 forbids wide vectors, for tests. */
+static bool may_be_wide(const assay_context *context)
+{
+    const char *isa = assay_context_isa(context);
+    return basis_has_wide() && (!isa || strcmp(isa, "sse2") != 0);
 }
 
 assay_status assay_basis_create(assay_context *context, assay_basis_kind kind, int order,
@@ -137,16 +148,14 @@ assay_status assay_basis_create(assay_context *context, assay_basis_kind kind, i
     basis->kind        = kind;
     basis->order       = order;
     basis->convention  = convention;
-    basis->symmetric   = kind == ASSAY_BASIS_HSH || basis_is_spherical(kind);
+    basis->wide        = may_be_wide(context);
     const size_t steps = arrange(basis);
-    for (int zone = 0; zone < BASIS_ZONES; zone++) {
-        basis->zone[zone] = assay_allocate(context, steps, sizeof(basis_step));
-        if (!basis->zone[zone]) {
-            assay_basis_destroy(basis);
-            return assay_fail_memory(context, "a basis");
-        }
-        place_steps(basis, basis->zone[zone]);
+    basis->step        = assay_allocate(context, steps, sizeof(basis_step));
+    if (!basis->step) {
+        assay_basis_destroy(basis);
+        return assay_fail_memory(context, "a basis");
     }
+    place_steps(basis);
     basis_constants(basis);
     *basis_out = basis;
     return ASSAY_OK;
@@ -157,9 +166,7 @@ void assay_basis_destroy(assay_basis *basis)
     if (!basis) {
         return;
     }
-    for (int zone = 0; zone < BASIS_ZONES; zone++) {
-        assay_release(basis->context, basis->zone[zone]);
-    }
+    assay_release(basis->context, basis->step);
     assay_release(basis->context, basis);
 }
 

@@ -51,24 +51,24 @@ static slope_place locate(assay_basis_kind kind, assay_vec3 direction)
     return place;
 }
 
-/* scale q(t) and its derivative by z. */
+/* scale p(t) and its derivative by z. */
 typedef struct {
     double value, rate;
 } radial;
 
-/* What is carried from degree to degree: the polynomial, its derivative by t, the last differences.
- */
+/* The polynomial, its derivative by t, and both of the degree before. */
 typedef struct {
-    double q, q_rate, difference, difference_rate;
+    double p, rate, before, rate_before;
 } polynomial;
 
-static void advance(polynomial *p, const basis_step *step, double t)
+static void advance(polynomial *at, const basis_step *step, double t)
 {
-    /* one end for all t: as good as the values but for l^2 units near the other */
-    p->difference_rate = step->c * p->difference_rate + step->a * (p->q - (1.0 - t) * p->q_rate);
-    p->difference      = step->c * p->difference - step->a * (1.0 - t) * p->q;
-    p->q += p->difference;
-    p->q_rate += p->difference_rate;
+    const double power    = step->exponent < 0 ? 0.5 : step->exponent + 1.0;
+    const double distance = power * ((t - step->b_hi) - step->b_lo);
+    const double g        = step->g_hi + step->g_lo;
+    const double p        = distance * at->p - g * at->before;
+    const double rate     = (power * at->p + distance * at->rate) - g * at->rate_before;
+    *at                   = (polynomial){p, rate, at->p, at->rate};
 }
 
 static assay_vec3 tangential(assay_vec3 g, assay_vec3 d) { return vec3_mad(g, -vec3_dot(g, d), d); }
@@ -98,14 +98,14 @@ assay_status assay_basis_gradient(const assay_basis *basis, assay_vec3 direction
         return ASSAY_ERR_DOMAIN;
     }
     const slope_place place = locate(basis->kind, direction);
-    const basis_step *step  = basis->zone[0];
+    const basis_step *step  = basis->step;
     double            c[2] = {0.0, 1.0}, s[2] = {0.0, 0.0}; /* b^(m-1), b^m */
     for (int m = 0; m < basis->order; m++) {
-        polynomial p = {.q = 1.0};
+        polynomial at = {.p = 1.0};
         for (int k = 0; k < basis->steps[m]; k++, step++) {
-            const radial f = {step->scale * p.q, step->scale * p.q_rate * place.t_rate};
+            const radial f = {step->scale * at.p, step->scale * at.rate * place.t_rate};
             store_slopes(step, &place, m, f, c, s, gradients_out);
-            advance(&p, step, place.t);
+            advance(&at, step, place.t);
         }
         c[0] = c[1];
         s[0] = s[1];

@@ -10,6 +10,7 @@
  * odd m the branch points t = +-i are far enough away that EXTRA nodes leave less than 1e-30.  (In
  * z itself there is a root z^(m/2) at the end, and the rule stalls near 1e-7.) */
 #include "assay/basis.h"
+#include "basis/basis_data.h"
 #include "basis/sparse.h"
 #include "core/alloc.h"
 #include "core/context.h"
@@ -18,10 +19,11 @@
 
 enum { EXTRA = 24, NODES_MAX = 2 * ASSAY_BASIS_MAX_ORDER + EXTRA };
 
-/* Values of both bases at the nodes, weighted in the first. */
+/* Values of both bases at the nodes. */
 typedef struct {
     int     nodes;
-    double *from, *to; /* nodes rows of each count */
+    double  weight[NODES_MAX]; /* of the integral over z */
+    double *from, *to;         /* nodes rows of each count */
 } node_values;
 
 static void release_values(assay_context *context, node_values *values)
@@ -34,23 +36,20 @@ static assay_status evaluate_nodes(assay_context *context, const assay_basis *fr
                                    const assay_basis *to, node_values *values_out)
 {
     const size_t n = assay_basis_count(from), m = assay_basis_count(to);
-    node_values  v = {assay_basis_order(from) + assay_basis_order(to) + EXTRA, NULL, NULL};
+    node_values  v = {.nodes = assay_basis_order(from) + assay_basis_order(to) + EXTRA};
     v.from         = assay_allocate(context, (size_t)v.nodes * n, sizeof(double));
     v.to           = assay_allocate(context, (size_t)v.nodes * m, sizeof(double));
     assay_status status =
         v.from && v.to ? ASSAY_OK : assay_fail_memory(context, "a conversion matrix");
-    double t[NODES_MAX], weight[NODES_MAX];
-    assay_gauss_legendre_on(0.0, 1.0, v.nodes, t, weight);
+    double t[NODES_MAX];
+    assay_gauss_legendre_on(0.0, 1.0, v.nodes, t, v.weight);
     for (int q = 0; q < v.nodes && !status; q++) {
-        const double     z = t[q] * t[q], w = weight[q] * 2.0 * t[q];
+        const double     z    = t[q] * t[q];
         const double     sine = sqrt((1.0 - t[q]) * (1.0 + t[q]) * (1.0 + z));
         const assay_vec3 d    = {sine, 0.0, z};
-        double          *row  = v.from + (size_t)q * n;
-        status                = assay_basis_evaluate(from, d, row);
+        status                = assay_basis_evaluate(from, d, v.from + (size_t)q * n);
         status                = status ? status : assay_basis_evaluate(to, d, v.to + (size_t)q * m);
-        for (size_t j = 0; j < n; j++) {
-            row[j] *= w;
-        }
+        v.weight[q] *= 2.0 * t[q];
     }
     if (status) {
         release_values(context, &v);
@@ -83,21 +82,14 @@ static size_t mirror_index(const assay_basis *basis, size_t i)
 {
     int l = 0, m = 0;
     assay_basis_function(basis, i, &l, &m);
-    for (size_t j = (size_t)(l * l); m < 0; j++) {
-        int k = 0, n = 0;
-        assay_basis_function(basis, j, &k, &n);
-        if (n == -m) {
-            return j;
-        }
-    }
-    return i;
+    return m < 0 ? basis_index(basis, l, -m) : i;
 }
 
 static double integral(const node_values *v, size_t from_count, size_t i, size_t to_count, size_t j)
 {
     double sum = 0.0, rest = 0.0;
     for (size_t q = 0; q < (size_t)v->nodes; q++) {
-        const double term = v->from[q * from_count + i] * v->to[q * to_count + j];
+        const double term = v->weight[q] * (v->from[q * from_count + i] * v->to[q * to_count + j]);
         const double next = sum + term, part = next - sum;
         rest += (sum - (next - part)) + (term - part);
         sum = next;
@@ -141,7 +133,7 @@ assay_status assay_basis_conversion(assay_context *context, const assay_basis *f
             entries += is_entry(to, i, from, j);
         }
     }
-    node_values  values = {0, NULL, NULL};
+    node_values  values = {0};
     assay_status status = evaluate_nodes(context, from, to, &values);
     if (status) {
         return status;

@@ -5,7 +5,7 @@
  *
  * In polar coordinates about the y axis the region is a rectangle and the turn adds to d.  At the
  * horizon H_l^m behaves as z^(m/2), z = cos(psi) sin(d):
- *   - in psi, cos(psi) = sin(p) with p = pi v^2 / 2 makes a power of v of it;
+ *   - in psi, a map that is flat at both ends makes a power of the distance of it;
  *   - in d there are two such roots, sqrt(sin d) and sqrt(sin(d + turn)), the second as close
  * behind the end as the turn is small; d = turn sinh^2(s), d + turn = turn cosh^2(s) undoes both.
  * Functions are even in y (cosines) or odd (sines): a quarter of the sphere serves, and the matrix
@@ -35,11 +35,14 @@ typedef struct {
 
 typedef struct {
     parity_block even, odd;
-    size_t       count;       /* of the basis                */
-    double      *values;      /* count                       */
-    double      *node[2];     /* d: nodes and weights in s   */
-    double      *psi_node[2]; /* psi: the same in v          */
+    size_t       count;       /* of the basis                          */
+    double      *values;      /* BLOCK rows of count                   */
+    double      *node[2];     /* d: nodes and weights in s             */
+    double      *psi_node[2]; /* psi: nodes and weights of [-1, 1]     */
     int          d_nodes, psi_nodes;
+    assay_vec3   here[BLOCK], there[BLOCK]; /* w, and what is turned to it   */
+    double       weight[BLOCK];
+    size_t       filled;
 } overlap;
 
 double assay_hsh_mirror_sign(const assay_basis *hsh, size_t i)
@@ -85,7 +88,7 @@ static assay_status allocate(assay_context *context, const assay_basis *hsh, int
     *o             = (overlap){.count = n * n, .d_nodes = d_nodes, .psi_nodes = psi_nodes};
     bool have      = allocate_block(context, n * (n + 1) / 2, &o->even);
     have           = allocate_block(context, n * (n - 1) / 2, &o->odd) && have;
-    o->values      = assay_allocate(context, o->count, sizeof(double));
+    o->values      = assay_allocate(context, BLOCK * o->count, sizeof(double));
     for (int i = 0; i < 2; i++) {
         o->node[i]     = assay_allocate(context, (size_t)d_nodes, sizeof(double));
         o->psi_node[i] = assay_allocate(context, (size_t)psi_nodes, sizeof(double));
@@ -108,11 +111,15 @@ static assay_status allocate(assay_context *context, const assay_basis *hsh, int
     return ASSAY_OK;
 }
 
-static void scatter(const parity_block *block, const double *values, double weight, double *rows,
-                    size_t row)
+static void scatter(const parity_block *block, const overlap *o, bool weighted, double *rows)
 {
-    for (size_t i = 0; i < block->count; i++) {
-        rows[row * block->count + i] = weight * values[block->index[i]];
+    for (size_t q = 0; q < o->filled; q++) {
+        const double  weight = weighted ? o->weight[q] : 1.0;
+        const double *values = o->values + q * o->count;
+        double       *row    = rows + q * block->count;
+        for (size_t i = 0; i < block->count; i++) {
+            row[i] = weight * values[block->index[i]];
+        }
     }
 }
 
@@ -133,22 +140,32 @@ static void accumulate(parity_block *block)
     }
 }
 
-static void flush(overlap *o, size_t filled)
+/* Takes in the nodes that have come together. */
+static assay_status flush(const assay_basis *hsh, overlap *o)
 {
     parity_block *blocks[2] = {&o->even, &o->odd};
-    for (int k = 0; k < 2; k++) {
-        const size_t n = blocks[k]->count, rest = (BLOCK - filled) * n * sizeof(double);
-        memset(blocks[k]->left + filled * n, 0, rest);
-        memset(blocks[k]->right + filled * n, 0, rest);
-        accumulate(blocks[k]);
+    assay_status  status    = assay_basis_evaluate_many(hsh, o->filled, o->here, o->values);
+    for (int k = 0; k < 2 && !status; k++) {
+        scatter(blocks[k], o, true, blocks[k]->left);
     }
+    status = status ? status : assay_basis_evaluate_many(hsh, o->filled, o->there, o->values);
+    for (int k = 0; k < 2 && !status; k++) {
+        parity_block *block = blocks[k];
+        const size_t  n     = block->count;
+        scatter(block, o, false, block->right);
+        memset(block->left + o->filled * n, 0, (BLOCK - o->filled) * n * sizeof(double));
+        memset(block->right + o->filled * n, 0, (BLOCK - o->filled) * n * sizeof(double));
+        accumulate(block);
+    }
+    o->filled = 0;
+    return status;
 }
 
 /* Nodes enough for order n; s_range: of the variable s. */
-static int psi_nodes_for(int order) { return 2 * order + 24; }
+static int psi_nodes_for(int order) { return 2 * (2 * order + 10); }
 static int d_nodes_for(int order, double s_range)
 {
-    return (int)((2.0 * order + 24.0) * (1.0 + 0.5 * s_range));
+    return (int)((1.5 * order + 14.0) * (1.0 + 0.5 * s_range));
 }
 
 static double asinh_of(double x) { return assay_log(x + sqrt(x * x + 1.0)); }
@@ -162,40 +179,24 @@ static double sinh_of(double s)
 
 static assay_status integrate(const assay_basis *hsh, double turn, double scale, overlap *o)
 {
-    size_t filled = 0;
-    for (int k = 0; k < o->d_nodes; k++) {
+    assay_status status = ASSAY_OK;
+    for (int k = 0; k < o->d_nodes && !status; k++) {
         const double       sh = sinh_of(o->node[0][k]), ch = sqrt(1.0 + sh * sh);
         const double       d = scale * sh * sh, d_weight = o->node[1][k] * 2.0 * scale * sh * ch;
         const assay_sincos here = assay_sincos_radians(d), there = assay_sincos_radians(d + turn);
-        for (int j = 0; j < o->psi_nodes; j++) {
-            const double       v   = o->psi_node[0][j];
-            const assay_sincos psi = assay_sincos_radians(0.5 * ASSAY_PI * v * v);
-            const double       c = psi.sin, y = psi.cos;
-            const double       weight = 2.0 * d_weight * c * ASSAY_PI * v * o->psi_node[1][j];
-            const assay_vec3   w      = {c * here.cos, y, c * here.sin};
-            const assay_vec3   u      = {c * there.cos, y, c * there.sin};
-            assay_status       status = assay_basis_evaluate(hsh, w, o->values);
-            if (status) {
-                return status;
-            }
-            scatter(&o->even, o->values, weight, o->even.left, filled);
-            scatter(&o->odd, o->values, weight, o->odd.left, filled);
-            status = assay_basis_evaluate(hsh, u, o->values);
-            if (status) {
-                return status;
-            }
-            scatter(&o->even, o->values, 1.0, o->even.right, filled);
-            scatter(&o->odd, o->values, 1.0, o->odd.right, filled);
-            if (++filled == BLOCK) {
-                flush(o, filled);
-                filled = 0;
-            }
+        for (int j = 0; j < o->psi_nodes / 2 && !status; j++) {
+            /* From the end of psi: e^2 (3 - e) pi / 4, a cubic that is flat at both ends. */
+            const double       e   = 1.0 - o->psi_node[0][o->psi_nodes - 1 - j];
+            const assay_sincos psi = assay_sincos_radians(0.25 * ASSAY_PI * e * e * (3.0 - e));
+            const double       c = psi.sin, y = psi.cos, slope = 0.75 * ASSAY_PI * e * (2.0 - e);
+            const size_t       q = o->filled++;
+            o->weight[q]         = 2.0 * d_weight * c * slope * o->psi_node[1][j];
+            o->here[q]           = (assay_vec3){c * here.cos, y, c * here.sin};
+            o->there[q]          = (assay_vec3){c * there.cos, y, c * there.sin};
+            status               = o->filled == BLOCK ? flush(hsh, o) : ASSAY_OK;
         }
     }
-    if (filled) {
-        flush(o, filled);
-    }
-    return ASSAY_OK;
+    return status || !o->filled ? status : flush(hsh, o);
 }
 
 static void gather(const parity_block *block, size_t count, double *matrix_out)
@@ -227,7 +228,7 @@ assay_status assay_hsh_overlap(const assay_basis *hsh, assay_context *context, d
         return status;
     }
     assay_gauss_legendre_on(0.0, range, o.d_nodes, o.node[0], o.node[1]);
-    assay_gauss_legendre_on(0.0, 1.0, o.psi_nodes, o.psi_node[0], o.psi_node[1]);
+    assay_gauss_legendre(o.psi_nodes, o.psi_node[0], o.psi_node[1]);
     status = integrate(hsh, turn, scale, &o);
     if (!status) {
         memset(matrix_out, 0, count * count * sizeof *matrix_out);

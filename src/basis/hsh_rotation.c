@@ -25,14 +25,28 @@ typedef struct {
     size_t             count;
 } turner;
 
+/* Two matrices for the work of one call; false, nothing held: refused. */
+static bool allocate_two(const turner *t, size_t first, size_t second, double *work[2])
+{
+    work[0] = assay_allocate(t->context, first, sizeof(double));
+    work[1] = assay_allocate(t->context, second, sizeof(double));
+    if (work[0] && work[1]) {
+        return true;
+    }
+    assay_release(t->context, work[0]);
+    assay_release(t->context, work[1]);
+    return false;
+}
+
+static void release_two(const turner *t, double *work[2])
+{
+    assay_release(t->context, work[0]);
+    assay_release(t->context, work[1]);
+}
+
 static assay_status no_memory(const turner *t)
 {
     return assay_fail_memory(t->context, "a rotation of hemispherical harmonics");
-}
-
-static double *allocate_matrix(const turner *t, size_t rows, size_t columns)
-{
-    return assay_allocate(t->context, rows * columns, sizeof(double));
 }
 
 static void transpose(size_t count, double *matrix)
@@ -87,22 +101,20 @@ static assay_status from_table(const turner *t, int steps, double beta, double *
         below = steps - 1;
     }
     const double share = place - below, step = 0.5 * ASSAY_PI / steps;
-    const size_t n     = t->count;
-    double      *above = allocate_matrix(t, n, n);
-    if (!above) {
+    const size_t n = t->count;
+    double      *work[2];
+    if (!allocate_two(t, n * n, n * n, work)) {
         return no_memory(t);
     }
-    assay_status status = exact(t, below * step, matrix_out);
-    status              = status ? status : exact(t, (below + 1.0) * step, above);
-    if (!status) {
-        for (size_t i = 0; i < n * n; i++) {
-            matrix_out[i] = (1.0 - share) * matrix_out[i] + share * above[i];
-        }
-        if (beta < 0.0) {
-            transpose(n, matrix_out);
-        }
+    assay_status status = exact(t, below * step, work[0]);
+    status              = status ? status : exact(t, (below + 1.0) * step, work[1]);
+    for (size_t i = 0; i < n * n && !status; i++) {
+        matrix_out[i] = (1.0 - share) * work[0][i] + share * work[1][i];
     }
-    assay_release(t->context, above);
+    if (!status && beta < 0.0) {
+        transpose(n, matrix_out);
+    }
+    release_two(t, work);
     return status;
 }
 
@@ -146,29 +158,30 @@ static void sandwich(const assay_sparse_view *c, const double *d, double *work, 
 
 static assay_status by_conversion(const turner *t, int sh_order, double beta, double *matrix_out)
 {
-    assay_basis  *sh     = NULL;
-    assay_sparse *c      = NULL;
-    assay_status  status = assay_basis_create(t->context, ASSAY_BASIS_SH,
+    assay_basis *sh     = NULL;
+    assay_status status = assay_basis_create(t->context, ASSAY_BASIS_SH,
                                              sh_order ? sh_order : assay_basis_order(t->hsh),
-                                              assay_basis_convention_of(t->hsh), &sh);
+                                             assay_basis_convention_of(t->hsh), &sh);
     if (status) {
         return status;
     }
-    status             = assay_basis_conversion(t->context, sh, t->hsh, &c);
-    const size_t  n    = assay_basis_count(sh);
-    double *const d    = allocate_matrix(t, n, n);
-    double *const work = allocate_matrix(t, t->count, n);
-    if (!status && !(d && work)) {
-        status = no_memory(t);
+    assay_sparse *c = NULL;
+    status          = assay_basis_conversion(t->context, sh, t->hsh, &c);
+    if (status) {
+        assay_basis_destroy(sh);
+        return status;
     }
-    if (!status) {
+    const size_t n = assay_basis_count(sh);
+    double      *work[2];
+    if (allocate_two(t, n * n, t->count * n, work)) {
         const assay_euler_zyz   turn = turn_about_y(assay_sin(0.5 * beta), assay_cos(0.5 * beta));
         const assay_sparse_view view = assay_sparse_entries(c);
-        assay_sh_rotation_of_split(sh, &turn, d);
-        sandwich(&view, d, work, matrix_out);
+        assay_sh_rotation_of_split(sh, &turn, work[0]);
+        sandwich(&view, work[0], work[1], matrix_out);
+        release_two(t, work);
+    } else {
+        status = no_memory(t);
     }
-    assay_release(t->context, d);
-    assay_release(t->context, work);
     assay_sparse_destroy(c);
     assay_basis_destroy(sh);
     return status;
@@ -186,26 +199,23 @@ static void analytical(const turner *t, double beta, double *matrix_out)
 
 static assay_status by_digon(const turner *t, double beta, double *matrix_out)
 {
-    const size_t n       = t->count;
-    double      *turned  = allocate_matrix(t, n, n);
-    double      *deleted = allocate_matrix(t, n, n);
-    assay_status status  = turned && deleted ? ASSAY_OK : no_memory(t);
-    status               = status ? status : assay_hsh_digon(t->hsh, t->context, beta, deleted);
+    const size_t n = t->count;
+    double      *work[2];
+    if (!allocate_two(t, n * n, n * n, work)) {
+        return no_memory(t);
+    }
+    const assay_status status = assay_hsh_digon(t->hsh, t->context, beta, work[1]);
     if (!status) {
-        analytical(t, beta, turned);
-        for (size_t i = 0; i < n; i++) {
-            double *row = matrix_out + i * n;
-            memset(row, 0, n * sizeof *row);
-            for (size_t k = 0; k < n; k++) {
-                const double d = turned[i * n + k];
-                for (size_t j = 0; d != 0.0 && j < n; j++) {
-                    row[j] += d * deleted[k * n + j];
-                }
+        analytical(t, beta, work[0]);
+        memset(matrix_out, 0, n * n * sizeof *matrix_out);
+        for (size_t i = 0; i < n * n; i++) {
+            const double d = work[0][i];
+            for (size_t j = 0; d != 0.0 && j < n; j++) {
+                matrix_out[i / n * n + j] += d * work[1][i % n * n + j];
             }
         }
     }
-    assay_release(t->context, turned);
-    assay_release(t->context, deleted);
+    release_two(t, work);
     return status;
 }
 

@@ -14,6 +14,7 @@
 
 #include <string.h>
 
+#include "basis/basis_data.h"
 #include "math/double_double.h"
 
 enum { ORDER = ASSAY_BASIS_MAX_ORDER, DEGREES = 2 * ORDER };
@@ -71,21 +72,21 @@ static void small_d(const turn *t, int order, int m, int k, double_double *e_out
     }
 }
 
-/* Where the entries of the functions (l, m), (l, -m) and (l, k), (l, -k) lie in the matrix. */
 typedef struct {
-    const size_t *index; /* of the basis, by l * l + l + m */
-    size_t        count;
-    double       *matrix;
+    const assay_basis *basis;
+    size_t             count;
+    double            *matrix;
 } target;
+
+static size_t place(const target *to, int l, int m) { return (size_t)basis_index(to->basis, l, m); }
 
 /* Writes Z(alpha) diag(cosines, sines) Z(gamma) for one pair of m, k >= 0. */
 static void write_pair(const target *to, const turn *t, int l, int m, int k, double cosines,
                        double sines)
 {
-    const int     base = l * l + l;
-    double *const row0 = to->matrix + to->index[base + m] * to->count;
-    double *const row1 = to->matrix + to->index[base - m] * to->count;
-    const size_t  col0 = to->index[base + k], col1 = to->index[base - k];
+    double *const row0 = to->matrix + place(to, l, m) * to->count;
+    double *const row1 = to->matrix + place(to, l, -m) * to->count;
+    const size_t  col0 = place(to, l, k), col1 = place(to, l, -k);
     const double  ca = t->cos_alpha[m], sa = t->sin_alpha[m];
     const double  cg = t->cos_gamma[k], sg = t->sin_gamma[k];
     if (m > 0) {
@@ -130,14 +131,8 @@ void assay_sh_rotation_of_split(const assay_basis *basis, const assay_euler_zyz 
     const int    order  = assay_basis_order(basis);
     const bool   thesis = assay_basis_convention_of(basis) == ASSAY_CONVENTION_THESIS;
     const size_t count  = assay_basis_count(basis);
-    size_t       index[ORDER * ORDER];
-    for (size_t i = 0; i < count; i++) {
-        int l = 0, m = 0;
-        assay_basis_function(basis, i, &l, &m);
-        index[l * l + l + m] = i;
-    }
-    const target to = {index, count, matrix_out};
-    const turn   t  = turn_of(split);
+    const target to     = {basis, count, matrix_out};
+    const turn   t      = turn_of(split);
     memset(matrix_out, 0, count * count * sizeof *matrix_out);
     for (int m = 0; m < order; m++) {
         for (int k = 0; k <= m; k++) {

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Breaks the source on purpose, one line of a list at a time, and expects the named test to fail.  The
-# list is $MUTANTS, or mutants.txt.  Prints TAP.  MUTANT_COMPILE, MUTANT_LINK, MUTANT_LIBS and BUILD
+# list is $MUTANTS, or mutants.txt; `HEADER in FILE.c` breaks a header for the one that includes it.
+# Prints TAP.  MUTANT_COMPILE, MUTANT_LINK, MUTANT_LIBS and BUILD
 # come from the Makefile.
 set -u
 : "${MUTANT_COMPILE:?run this through make test}" "${MUTANT_LINK:?}" "${BUILD:?}"
@@ -13,11 +14,16 @@ while IFS= read -r line; do
     file=$(echo "$line" | sed 's/ ; .*//')
     change=$(echo "$line" | sed 's/^[^;]* ; //; s/ ; [^;]*$//')
     test=$(echo "$line" | sed 's/.* ; //')
-    mutant=$folder/$(basename "$file")
+    unit=${file##* in }
+    file=${file%% in *}
+    rm -rf "$folder/src"
+    mkdir -p "$folder/$(dirname "$file")"
+    mutant=$folder/$file
     sed "$change" "$file" > "$mutant"
+    [ "$unit" != "$file" ] || unit=$mutant
     if cmp -s "$file" "$mutant"; then
         echo "not ok $number - $file: the expression changes nothing: $change"
-    elif ! $MUTANT_COMPILE -I"$(dirname "$file")" -w -c "$mutant" -o "$folder/mutant.o" ||
+    elif ! $MUTANT_COMPILE -iquote "$folder/src" -I"$(dirname "$file")" -w -c "$unit" -o "$folder/mutant.o" ||
          ! $MUTANT_LINK "$folder/mutant.o" "$BUILD/tests/$test.o" -o "$folder/mutant.bin" \
                $MUTANT_LIBS; then
         echo "not ok $number - $file: the mutant does not build: $change"

@@ -1,0 +1,141 @@
+/* Nanoseconds for all values of a direction, against the textbook: angles by acos and atan2, each
+ * function by itself, its Legendre polynomial by the standard recurrence, its normalisation by
+ * factorials, its cosine from libm.  Both are timed in turn, and the ratio is the least disturbed
+ * of several rounds of each. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "assay/assay.h"
+
+enum { DIRECTIONS = 1024, ROUNDS = 15, ORDERS = 4 };
+
+static const double pi = 3.14159265358979323846;
+
+static double seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static double factorial(int n)
+{
+    double product = 1.0;
+    for (int i = 2; i <= n; i++) {
+        product *= i;
+    }
+    return product;
+}
+
+/* [gautron06] eq. 3.4 to 3.6 */
+static double legendre(int l, int m, double x)
+{
+    double       mm   = 1.0;
+    const double root = sqrt((1.0 - x) * (1.0 + x));
+    for (int i = 1; i <= m; i++) {
+        mm *= -(2.0 * i - 1.0) * root;
+    }
+    if (l == m) {
+        return mm;
+    }
+    double last = mm, here = x * (2.0 * m + 1.0) * mm;
+    for (int i = m + 2; i <= l; i++) {
+        const double next = (x * (2.0 * i - 1.0) * here - (i + m - 1.0) * last) / (i - m);
+        last              = here;
+        here              = next;
+    }
+    return here;
+}
+
+/* eq. 3.7 and 3.18: area is that of the domain, 4 pi or 2 pi */
+static double textbook(int l, int m, double x, double phi, double area)
+{
+    const int    a = abs(m);
+    const double k = sqrt((2.0 * l + 1.0) * factorial(l - a) / (area * factorial(l + a)));
+    if (m == 0) {
+        return k * legendre(l, 0, x);
+    }
+    return sqrt(2.0) * k * legendre(l, a, x) * (m > 0 ? cos(a * phi) : sin(a * phi));
+}
+
+static void textbook_all(bool hemisphere, int order, assay_vec3 d, double *values)
+{
+    const double theta = acos(d.z);
+    const double phi   = atan2(d.y, d.x);
+    const double x     = hemisphere ? 2.0 * cos(theta) - 1.0 : cos(theta);
+    for (int l = 0; l < order; l++) {
+        for (int m = -l; m <= l; m++) {
+            values[l * l + l + m] = textbook(l, m, x, phi, hemisphere ? 2.0 * pi : 4.0 * pi);
+        }
+    }
+}
+
+typedef enum { WAY_TEXTBOOK, WAY_SINGLE, WAY_BATCH, WAY_COUNT } way;
+
+static void run(way w, const assay_basis *basis, const assay_vec3 *directions, double *values)
+{
+    const size_t count = assay_basis_count(basis);
+    const bool   hemi  = assay_basis_kind_of(basis) == ASSAY_BASIS_HSH;
+    if (w == WAY_BATCH) {
+        assay_basis_evaluate_many(basis, DIRECTIONS, directions, values);
+        return;
+    }
+    for (size_t i = 0; i < DIRECTIONS; i++) {
+        if (w == WAY_SINGLE) {
+            assay_basis_evaluate(basis, directions[i], values + i * count);
+        } else {
+            textbook_all(hemi, assay_basis_order(basis), directions[i], values + i * count);
+        }
+    }
+}
+
+static void measure(const assay_basis *basis, const assay_vec3 *directions, double *values)
+{
+    double best[WAY_COUNT] = {INFINITY, INFINITY, INFINITY};
+    for (int round = 0; round < ROUNDS; round++) {
+        for (int w = 0; w < WAY_COUNT; w++) {
+            const double start = seconds();
+            run((way)w, basis, directions, values);
+            best[w] = fmin(best[w], (seconds() - start) / DIRECTIONS * 1e9);
+        }
+    }
+    printf("%-4s order %2d  textbook %9.1f ns  single %8.1f ns (%5.1fx)  batch %8.1f ns (%5.1fx)\n",
+           assay_basis_kind_name(assay_basis_kind_of(basis)), assay_basis_order(basis),
+           best[WAY_TEXTBOOK], best[WAY_SINGLE], best[WAY_TEXTBOOK] / best[WAY_SINGLE],
+           best[WAY_BATCH], best[WAY_TEXTBOOK] / best[WAY_BATCH]);
+}
+
+int main(void)
+{
+    static const int              orders[ORDERS] = {3, 5, 10, 16};
+    static const assay_basis_kind kinds[2]       = {ASSAY_BASIS_SH, ASSAY_BASIS_HSH};
+    assay_vec3                   *directions     = calloc(DIRECTIONS, sizeof *directions);
+    double                       *values         = calloc((size_t)DIRECTIONS * 256, sizeof *values);
+    assay_context                *context        = NULL;
+    if (!directions || !values || assay_context_create(NULL, &context) != ASSAY_OK) {
+        return EXIT_FAILURE;
+    }
+    for (int i = 0; i < DIRECTIONS; i++) {
+        const double z   = (i + 0.5) / DIRECTIONS;
+        const double phi = 2.0 * pi * fmod(i * 0.6180339887498949, 1.0);
+        const double r   = sqrt((1.0 - z) * (1.0 + z));
+        directions[i]    = (assay_vec3){r * cos(phi), r * sin(phi), z};
+    }
+    for (int kind = 0; kind < 2; kind++) {
+        for (int i = 0; i < ORDERS; i++) {
+            assay_basis *basis = NULL;
+            if (assay_basis_create(context, kinds[kind], orders[i], ASSAY_CONVENTION_THESIS,
+                                   &basis) != ASSAY_OK) {
+                return EXIT_FAILURE;
+            }
+            measure(basis, directions, values);
+            assay_basis_destroy(basis);
+        }
+    }
+    assay_context_destroy(context);
+    free(values);
+    free(directions);
+    return EXIT_SUCCESS;
+}
