@@ -17,6 +17,7 @@ DEPS_BUILD := gcc g++ make libembree-dev libopenexr-dev libtinygltf-dev libsleef
               librandom123-dev libpng-dev libjpeg-dev libcjson-dev libmd-dev
 DEPS_TEST  := libcmocka-dev clang libomp-dev
 DEPS_LINT  := clang-format clang-tidy cppcheck
+DEPS_REF   := libflint-arb-dev libflint-dev libmpfr-dev
 
 # Same bits everywhere: no contraction, no fast math, no -march (docs/determinism.md).
 override CPPFLAGS += -D_GNU_SOURCE -DASSAY_VERSION='"$(VERSION)"' -Iinclude -Isrc -Itests
@@ -42,10 +43,10 @@ TESTS   := $(TEST_C:%.c=$(BUILD)/%)
 TEST_SCRIPTS := $(wildcard tests/*/test_*.sh)
 BENCHES := $(BENCH_C:%.c=$(BUILD)/%)
 OURS    := $(wildcard include/assay/*.h src/*/*.[ch] src/*/*/*.[ch] src/*/*.cpp scenes/gen/*.[ch] \
-             tests/*/*.[ch])
+             refdata/gen/*.[ch] tests/*/*.[ch])
 
-.PHONY: all help deps deps-test demo test install uninstall scenes layers format lint bench \
-        mutants check-sanitize check-arm64 fuzz clean
+.PHONY: all help deps deps-test demo test install uninstall scenes ref ref-update layers format \
+        lint bench mutants check-sanitize check-arm64 fuzz clean
 all: $(BUILD)/assay ## build the command
 
 help: ## list the targets
@@ -149,6 +150,29 @@ $(BUILD)/make_scenes: $(GEN_O) $(BUILD)/libassay.a
 scenes: $(BUILD)/make_scenes ## write our own scenes again
 	$(BUILD)/make_scenes scenes
 
+# ---- certified tables: the generators see nothing of src/ and include/ ----
+REF_BUILD := build/ref
+REF_TOOLS := $(patsubst refdata/gen/%.c,$(REF_BUILD)/%,$(wildcard refdata/gen/gen_*.c))
+REF_O     := $(patsubst refdata/gen/%.c,$(REF_BUILD)/%.o,\
+               $(filter-out refdata/gen/gen_%,$(wildcard refdata/gen/*.c)))
+
+$(REF_BUILD)/%.o: refdata/gen/%.c
+	@mkdir -p $(@D)
+	$(CC) -D_GNU_SOURCE -std=c11 -O2 $(WARN) -ffp-contract=off -MMD -MP -c $< -o $@
+
+$(REF_TOOLS): $(REF_BUILD)/%: $(REF_BUILD)/%.o $(REF_O)
+	$(CC) $^ -lflint-arb -lflint -lmpfr -lgmp -lm -o $@
+
+ref: ## make the certified tables again, beside the old ones, and compare
+	@$(call install_missing,$(DEPS_REF))
+	@$(MAKE) --no-print-directory -s $(REF_TOOLS)
+	@refdata/gen/make_tables.sh compare $(REF_TOOLS)
+
+ref-update: ## make the certified tables again and put them in place
+	@$(call install_missing,$(DEPS_REF))
+	@$(MAKE) --no-print-directory -s $(REF_TOOLS)
+	@refdata/gen/make_tables.sh update $(REF_TOOLS)
+
 # ---- order in the house ----
 layers: ## check that every include follows src/layers.txt
 	@awk -f tests/tools/layers.awk src/layers.txt $(filter src/%,$(OURS))
@@ -189,5 +213,6 @@ uninstall: ## remove what install put there
 clean: ## remove everything that was built
 	rm -rf build
 
+-include $(wildcard $(REF_BUILD)/*.d)
 -include $(LIB_O:.o=.d) $(CLI_O:.o=.d) $(GEN_O:.o=.d) $(HELP_O:.o=.d) $(TESTS:=.d) $(BENCHES:=.d)
 .SECONDARY:

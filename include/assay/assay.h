@@ -8,6 +8,7 @@
 #include "assay/context.h"
 #include "assay/image.h"
 #include "assay/params.h"
+#include "assay/plot.h"
 #include "assay/render.h"
 #include "assay/scene.h"
 #include "assay/status.h"

@@ -44,5 +44,6 @@ int cli_render(int count, char **argv);
 int cli_scene(int count, char **argv);
 int cli_methods(int count, char **argv);
 int cli_diff(int count, char **argv);
+int cli_basis(int count, char **argv);
 
 #endif

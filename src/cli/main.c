@@ -16,6 +16,7 @@ static const struct {
     {"scene", cli_scene, "tell what a glTF scene holds, and what of it is not supported"},
     {"methods", cli_methods, "list the methods, their parameters, ranges and sources"},
     {"diff", cli_diff, "compare two OpenEXR images"},
+    {"basis", cli_basis, "SH, HSH and other bases: values, projections, rotations, pictures"},
 };
 
 enum { COMMAND_COUNT = sizeof COMMANDS / sizeof COMMANDS[0] };
@@ -53,7 +54,8 @@ static int run_command(int argc, char **argv)
             return COMMANDS[i].run(argc - 2, argv + 2);
         }
     }
-    cli_complain(name, "unknown command or option; the commands are render, scene, methods, diff");
+    cli_complain(name,
+                 "unknown command or option; the commands are render, scene, methods, diff, basis");
     return CLI_EXIT_USAGE;
 }
 

@@ -15,7 +15,8 @@ typedef enum {
     ASSAY_STAGE_CAMERA     = 1, /* item: pixel; radiance through the pixel          */
     ASSAY_STAGE_IRRADIANCE = 2, /* item: pixel; irradiance at the visible point     */
     ASSAY_STAGE_PROBE      = 3, /* item: probe                                      */
-    ASSAY_STAGE_LIGHTS     = 4  /* item: triangle; power of textured emitters       */
+    ASSAY_STAGE_LIGHTS     = 4, /* item: triangle; power of textured emitters       */
+    ASSAY_STAGE_PROJECTION = 5  /* item: sample; direction to project a function    */
 } assay_stage;
 
 typedef struct {

@@ -1,6 +1,4 @@
-/* test_json.c - what the command writes as JSON: it parses, and holds what is documented.
- *
- * The program is $ASSAY_BIN, else build/release/assay; it runs as anyone would run it. */
+/* test_json.c - what the command writes as JSON: it parses, and holds what is documented. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -8,75 +6,27 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 
 #include <cmocka.h>
 
 #include <cjson/cJSON.h>
 
 #include "assay/assay.h"
+#include "support/run_json.h"
 #include "support/temporary.h"
 
 #define BOX "scenes/cornell-box/cornell-box.gltf"
 
-/* Runs `assay ARGUMENTS`, which must end with this exit code, and parses its stdout. */
-static cJSON *run_json(int code, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static cJSON *run_json(int code, const char *format, ...)
-{
-    char        arguments[2048], command[4096];
-    const char *program = getenv("ASSAY_BIN");
-    va_list     list;
-    va_start(list, format);
-    vsnprintf(arguments, sizeof arguments, format, list);
-    va_end(list);
-    snprintf(command, sizeof command, "%s %s", program ? program : "build/release/assay",
-             arguments);
-    FILE *pipe = popen(command, "r");
-    assert_non_null(pipe);
-    char       *text = NULL;
-    size_t      size = 0;
-    FILE       *out  = open_memstream(&text, &size);
-    static char block[4096];
-    for (size_t got; (got = fread(block, 1, sizeof block, pipe)) > 0;) {
-        fwrite(block, 1, got, out);
-    }
-    fclose(out);
-    const int status = pclose(pipe);
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != code) {
-        fail_msg("%s: ended with %d, not with exit code %d", command, status, code);
-    }
-    cJSON *json = cJSON_ParseWithOpts(text, NULL, true);
-    if (!json) {
-        fail_msg("%s: no JSON: %.200s", command, text);
-    }
-    free(text);
-    return json;
-}
-
-/* A member by its path, "rays/total"; it must be there. */
-static const cJSON *member(const cJSON *json, const char *path)
-{
-    char copy[128], *rest = copy;
-    snprintf(copy, sizeof copy, "%s", path);
-    for (char *name; (name = strsep(&rest, "/"));) {
-        json = cJSON_GetObjectItemCaseSensitive(json, name);
-        if (!json) {
-            fail_msg("there is no %s", path);
-        }
-    }
-    return json;
-}
-
 static double number(const cJSON *json, const char *path)
 {
-    assert_true(cJSON_IsNumber(member(json, path)));
-    return member(json, path)->valuedouble;
+    assert_true(cJSON_IsNumber(json_member(json, path)));
+    return json_member(json, path)->valuedouble;
 }
 
 static const char *text(const cJSON *json, const char *path)
 {
-    assert_true(cJSON_IsString(member(json, path)));
-    return member(json, path)->valuestring;
+    assert_true(cJSON_IsString(json_member(json, path)));
+    return json_member(json, path)->valuestring;
 }
 
 /* ---- render --stats ---- */
@@ -206,9 +156,9 @@ static void target_error(void **state)
 
 static void check_triple(const cJSON *json, const char *path)
 {
-    assert_int_equal(cJSON_GetArraySize(member(json, path)), 3);
+    assert_int_equal(cJSON_GetArraySize(json_member(json, path)), 3);
     const cJSON *item;
-    cJSON_ArrayForEach(item, member(json, path)) { assert_true(cJSON_IsNumber(item)); }
+    cJSON_ArrayForEach(item, json_member(json, path)) { assert_true(cJSON_IsNumber(item)); }
 }
 
 static void scene_report(void **state)
@@ -224,19 +174,19 @@ static void scene_report(void **state)
         assert_true(number(scene, counts[i]) >= 0.0);
     }
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
-        assert_true(cJSON_IsArray(member(scene, lists[i])));
+        assert_true(cJSON_IsArray(json_member(scene, lists[i])));
     }
     check_triple(scene, "bounds/min");
     check_triple(scene, "bounds/max");
-    assert_true(cJSON_IsBool(member(scene, "has_light")));
+    assert_true(cJSON_IsBool(json_member(scene, "has_light")));
     assert_true(number(scene, "triangles") > 0.0 && number(scene, "duration") > 0.0);
-    assert_true(cJSON_GetArraySize(member(scene, "animations")) > 0);
-    assert_true(strlen(text(cJSON_GetArrayItem(member(scene, "cameras"), 0), "name")) > 0);
+    assert_true(cJSON_GetArraySize(json_member(scene, "animations")) > 0);
+    assert_true(strlen(text(cJSON_GetArrayItem(json_member(scene, "cameras"), 0), "name")) > 0);
     cJSON_Delete(scene);
 
     cJSON *lit = run_json(0, "scene " BOX " --json --background 1,2,3");
     check_triple(lit, "background");
-    assert_true(cJSON_IsNull(member(lit, "environment")));
+    assert_true(cJSON_IsNull(json_member(lit, "environment")));
     cJSON_Delete(lit);
 }
 
@@ -246,13 +196,13 @@ static void methods_report(void **state)
     (void)state;
     static const char *const types[] = {"int", "real", "bool", "choice"};
     cJSON                   *json    = run_json(0, "methods --json");
-    assert_int_equal(cJSON_GetArraySize(member(json, "methods")), assay_method_count());
+    assert_int_equal(cJSON_GetArraySize(json_member(json, "methods")), assay_method_count());
     for (int i = 0; i < assay_method_count(); i++) {
         const assay_method_info info   = assay_method_at(i);
-        const cJSON            *method = cJSON_GetArrayItem(member(json, "methods"), i);
+        const cJSON            *method = cJSON_GetArrayItem(json_member(json, "methods"), i);
         assert_string_equal(text(method, "name"), info.name);
         assert_string_equal(text(method, "summary"), info.summary);
-        const cJSON *param = member(method, "params")->child;
+        const cJSON *param = json_member(method, "params")->child;
         for (const assay_param_desc *p = info.params; p->name; p++, param = param->next) {
             assert_non_null(param);
             assert_string_equal(text(param, "name"), p->name);
@@ -274,7 +224,7 @@ static void methods_report(void **state)
     }
     cJSON_Delete(json);
     cJSON *one = run_json(0, "methods path --json");
-    assert_int_equal(cJSON_GetArraySize(member(one, "methods")), 1);
+    assert_int_equal(cJSON_GetArraySize(json_member(one, "methods")), 1);
     cJSON_Delete(one);
 }
 
@@ -292,12 +242,12 @@ static void diff_report(void **state)
                               seed, temporary_path(&folder, name)));
     }
     cJSON *same = run_json(0, "diff %s/1.exr %s/1.exr --json", folder.folder, folder.folder);
-    assert_true(cJSON_IsTrue(member(same, "identical")));
+    assert_true(cJSON_IsTrue(json_member(same, "identical")));
     cJSON *other = run_json(1, "diff %s/1.exr %s/2.exr --json", folder.folder, folder.folder);
-    assert_true(cJSON_IsFalse(member(other, "identical")));
+    assert_true(cJSON_IsFalse(json_member(other, "identical")));
     const cJSON *channel;
     int          judged = 0;
-    cJSON_ArrayForEach(channel, member(other, "channels"))
+    cJSON_ArrayForEach(channel, json_member(other, "channels"))
     {
         for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
             number(channel, numbers[i]);
@@ -308,7 +258,7 @@ static void diff_report(void **state)
             assert_true(number(channel, "differing") > 0.0);
             judged++;
         } else if (strcmp(text(channel, "channel"), "Z") == 0) {
-            assert_true(cJSON_IsNull(member(channel, "z_rms")));
+            assert_true(cJSON_IsNull(json_member(channel, "z_rms")));
             assert_true(number(channel, "differing") == 0.0);
             judged++;
         }

@@ -1,0 +1,177 @@
+/* cmd_basis_project.c - `assay basis project`: an environment map or a lobe in a basis. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "basis_options.h"
+#include "basis_print.h"
+#include "console.h"
+
+static const char       COMMAND[] = "basis project";
+static const cli_option OPTIONS[] = {
+    {"env", 0, "F", "environment map, latitude-longitude, .exr or .hdr: SH, exactly"},
+    {"rotation-deg", 0, "D", "turn the map about world +y"},
+    {"irradiance", 0, NULL, "times A_l of the clamped cosine: irradiance, not radiance"},
+    BASIS_OPTION_LOBE,
+    BASIS_OPTION_BASIS,
+    BASIS_OPTION_ORDER,
+    {"theta-nodes", 0, "N", "of the quadrature of a lobe (default 128)"},
+    {"phi-nodes", 0, "N", "around (default 256)"},
+    {"samples", 0, "N", "Monte Carlo instead, with variances"},
+    {"seed", 0, "S", "of its random numbers (default 0)"},
+    BASIS_OPTION_CONVENTION,
+    BASIS_OPTIONS_PRINT};
+
+enum { CHANNELS = 3 };
+
+static void convolve(const assay_basis *basis, const double *a, double *coefficients)
+{
+    const size_t count = assay_basis_count(basis);
+    for (size_t i = 0; i < CHANNELS * count; i++) {
+        int l, m;
+        assay_basis_function(basis, i % count, &l, &m);
+        coefficients[i] *= a[l];
+    }
+}
+
+static assay_status project_map(assay_context *context, const assay_basis *basis,
+                                const basis_request *r, double *coefficients)
+{
+    assay_image *map    = NULL;
+    assay_status status = assay_image_read(context, r->env, &map);
+    if (status == ASSAY_OK) {
+        status =
+            assay_basis_project_environment(basis, map, cli_radians(r->rotation_deg), coefficients);
+    }
+    assay_image_destroy(map);
+    if (status == ASSAY_OK && r->irradiance) {
+        double a[ASSAY_BASIS_MAX_ORDER];
+        status = assay_clamped_cosine(assay_basis_order(basis), a);
+        if (status == ASSAY_OK) {
+            convolve(basis, a, coefficients);
+        }
+    }
+    return status;
+}
+
+static assay_status report_map(assay_context *context, const assay_basis *basis,
+                               const basis_request *r, double *coefficients)
+{
+    static const char *const names[CHANNELS] = {"R", "G", "B"};
+    assay_status             status          = project_map(context, basis, r, coefficients);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    if (!r->json) {
+        cli_print_functions(basis, names, CHANNELS, coefficients, r->hex);
+        return ASSAY_OK;
+    }
+    cJSON     *root     = cli_json_basis(basis);
+    cJSON     *channels = cJSON_CreateStringArray(names, CHANNELS);
+    const bool added    = root && channels && cJSON_AddItemToObject(root, "channels", channels);
+    const bool ok       = added && cli_json_add_rows(root, "values", coefficients, CHANNELS,
+                                                     assay_basis_count(basis), r->hex);
+    if (!added) {
+        cJSON_Delete(channels);
+    }
+    return cli_json_print(root, ok);
+}
+
+static void lobe_value(void *user, assay_vec3 direction, double *values_out)
+{
+    if (assay_lobe_value(user, direction, values_out) != ASSAY_OK) {
+        *values_out = 0.0;
+    }
+}
+
+/* coefficients: one row; behind it, where there are samples, one of variances. */
+static assay_status report_lobe(assay_context *context, const assay_basis *basis,
+                                const basis_request *r, double *coefficients)
+{
+    static const char *const names[2] = {"value", "variance"};
+    const size_t             count    = assay_basis_count(basis);
+    assay_lobe               lobe     = r->lobe;
+    const bool               random   = r->samples > 0;
+    assay_status             status =
+        random
+                        ? assay_basis_project_random(basis, context, lobe_value, &lobe, 1, (uint64_t)r->samples,
+                                                     r->seed, coefficients, coefficients + count)
+                        : assay_basis_project(basis, context, lobe_value, &lobe, 1, (int)r->theta_nodes,
+                                              (int)r->phi_nodes, coefficients);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    if (!r->json) {
+        cli_print_functions(basis, names, random ? 2 : 1, coefficients, r->hex);
+        return ASSAY_OK;
+    }
+    cJSON     *root = cli_json_basis(basis);
+    const bool ok =
+        root && cJSON_AddStringToObject(root, "lobe", r->lobe_text) &&
+        cli_json_add_list(root, "values", coefficients, count, r->hex) &&
+        (!random || cli_json_add_list(root, "variances", coefficients + count, count, r->hex));
+    return cli_json_print(root, ok);
+}
+
+static assay_status report(assay_context *context, const basis_request *r)
+{
+    assay_basis *basis  = NULL;
+    assay_status status = cli_basis_create(context, r, r->basis, r->order, &basis);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    double *coefficients = calloc(CHANNELS * assay_basis_count(basis), sizeof *coefficients);
+    if (!coefficients) {
+        status = ASSAY_ERR_MEMORY;
+    } else if (r->env) {
+        status = report_map(context, basis, r, coefficients);
+    } else {
+        status = report_lobe(context, basis, r, coefficients);
+    }
+    free(coefficients);
+    assay_basis_destroy(basis);
+    return status;
+}
+
+static bool makes_sense(const basis_request *r)
+{
+    if (!r->env && !r->has_lobe) {
+        return cli_basis_need(COMMAND, false, "--env or --lobe");
+    }
+    if (r->env && r->has_lobe) {
+        return cli_complain(COMMAND, "--env and --lobe: one thing at a time");
+    }
+    if (r->env && r->basis != ASSAY_BASIS_SH) {
+        return cli_complain(COMMAND, "an environment map is projected to --basis sh; convert and "
+                                     "rotate take it from there");
+    }
+    if (r->irradiance && !r->env) {
+        return cli_complain(COMMAND, "--irradiance is of --env");
+    }
+    return cli_basis_need(COMMAND, r->env || r->has_basis, "--basis") &&
+           cli_basis_need(COMMAND, r->order > 0, "--order");
+}
+
+int cli_basis_project(int count, char **argv)
+{
+    basis_request request = {.basis = ASSAY_BASIS_SH, .theta_nodes = 128, .phi_nodes = 256};
+    cli_console   console;
+    if (!cli_basis_parse(COMMAND, count, argv, OPTIONS, &request)) {
+        return CLI_EXIT_USAGE;
+    }
+    if (request.help) {
+        printf("usage: assay basis project --env F --order N\n"
+               "       assay basis project --lobe L --basis NAME --order N\n");
+        cli_print_options(OPTIONS);
+        return 0;
+    }
+    if (!makes_sense(&request)) {
+        return CLI_EXIT_USAGE;
+    }
+    assay_context *context = cli_console_open(&console, COMMAND, false, 1);
+    if (!context) {
+        return assay_status_exit_code(ASSAY_ERR_MEMORY);
+    }
+    const int code = cli_console_finish(&console, context, report(context, &request));
+    assay_context_destroy(context);
+    return code;
+}
