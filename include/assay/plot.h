@@ -23,10 +23,11 @@ typedef struct {
 } assay_plot_curve;
 
 typedef struct {
-    const char             *title, *x_label, *y_label;  /* printable ASCII                  */
-    double                  x_min, x_max, y_min, y_max; /* the frame; min < max, finite    */
-    size_t                  curve_count;                /* at most ASSAY_PLOT_MAX_CURVES   */
-    const assay_plot_curve *curves; /* drawn in this order; what is outside is cut off     */
+    const char *title, *x_label, *y_label; /* printable ASCII                  */
+    double      x_min, x_max, y_min,
+        y_max; /* the frame: within +-1e9, min < max by a millionth of the larger or of 1 */
+    size_t                  curve_count; /* at most ASSAY_PLOT_MAX_CURVES   */
+    const assay_plot_curve *curves;      /* drawn in this order; what is outside is cut off     */
 } assay_plot;
 
 /* Ticks at round numbers, the legend at the lower right.  width, height: 200 ... 4096.

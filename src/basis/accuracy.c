@@ -226,10 +226,9 @@ assay_status assay_basis_accuracy(const assay_basis *basis, assay_context *conte
     assay_status    status   = assay_analysis_create(context, basis, false, &analysis);
     double *work = assay_allocate(context, 2 * MOST_NODES + 3 * count + 2 * order, sizeof *work);
     angle_node *angles = assay_allocate(context, 2 * MOST_NODES, sizeof *angles);
-    if (status == ASSAY_OK && (!work || !angles)) {
-        status = assay_fail_memory(context, "an accuracy");
-    }
-    if (status == ASSAY_OK) {
+    if (!work || !angles) {
+        status = status == ASSAY_OK ? assay_fail_memory(context, "an accuracy") : status;
+    } else if (status == ASSAY_OK) {
         prepare(&m, lobe, work);
         m.analysis       = analysis;
         m.psi            = angles;
