@@ -74,7 +74,9 @@ ASSAY_API assay_convention assay_basis_convention_of(const assay_basis *basis);
 ASSAY_API int              assay_basis_order(const assay_basis *basis);
 /* Number of functions. */
 ASSAY_API size_t assay_basis_count(const assay_basis *basis);
-/* Band and azimuthal number of function i < count.  (Zernike: radial degree and azimuthal.) */
+/* Band and azimuthal number of function i < count (Zernike: radial degree and azimuthal), ascending
+ * in l, then in m, but for the order KONTKANEN.  So i is l*l + l + m, for ZERNIKE and ESH l*(l +
+ * 1)/2 + (l + m)/2. */
 ASSAY_API void assay_basis_function(const assay_basis *basis, size_t i, int *l_out, int *m_out);
 
 /* ---- values ---- */
@@ -148,8 +150,9 @@ ASSAY_API void assay_rotation_from_euler_zyz(double alpha, double beta, double g
                                              double rotation_out[9]);
 
 /* D with c' = D c: coefficients of f(R^-1 w) from those of f; count * count, block-diagonal
- * [ivanic96, ivanic98].  For SH (any convention) and LSOSH.  Errors: ARGUMENT (kind), DOMAIN (R is
- * not a rotation to 2^-20). */
+ * (docs/methods/basis-rotation.md).  For SH (any convention) and LSOSH.  R may be off by rounding:
+ * what is meant is the rotation nearest to it.  Errors: ARGUMENT (kind), DOMAIN (R is not a
+ * rotation to 2^-20). */
 ASSAY_API assay_status assay_sh_rotation(const assay_basis *sh, const double rotation[9],
                                          double *matrix_out);
 
@@ -157,8 +160,8 @@ ASSAY_API assay_status assay_sh_rotation(const assay_basis *sh, const double rot
 ASSAY_API assay_status assay_sh_rotate(const assay_basis *sh, const double *matrix, int channels,
                                        const double *coefficients, double *rotated_out);
 
-/* Rotation about +z in closed form, any basis whose functions come in pairs cos(m phi), sin(m phi)
- * (all but the order KONTKANEN): in place.  rad. */
+/* Rotation about +z in closed form, any basis and convention: in place.  rad; good for angles of
+ * many turns, too.  Errors: ARGUMENT (channels < 1), DOMAIN (angle not finite). */
 ASSAY_API assay_status assay_basis_rotate_z(const assay_basis *basis, double angle, int channels,
                                             double *coefficients);
 

@@ -1,7 +1,7 @@
 /* clamped_cosine.c - the convolution that makes irradiance of radiance.
  *
  * A_l = 2 pi (-1)^(l/2 - 1) binomial(l, l/2) / (2^l (l + 2) (l - 1)) for even l >= 2
- * [ramamoorthi01] eq. 8: whole numbers below 2^53, and pi as two doubles. */
+ * [ramamoorthi01]: whole numbers below 2^53, and pi as two doubles. */
 #include "assay/basis.h"
 #include "math/double_double.h"
 

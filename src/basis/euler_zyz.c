@@ -48,7 +48,7 @@ static bool is_rotation(const double r[9])
 }
 
 /* X (3 - X' X) / 2, which squares the distance from orthogonality and tends to the orthogonal
- * matrix nearest to X [higham86]. */
+ * matrix nearest to X [bjorck71]. */
 static void orthogonalize_once(double_double x[3][3])
 {
     double_double correction[3][3], y[3][3];

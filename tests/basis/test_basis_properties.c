@@ -278,31 +278,44 @@ static void test_gradients_at_the_ends(void **state)
 
 /* Coefficients of what a turn makes of a function are those whose sum at a turned direction is the
  * sum before at the direction. */
+static void check_turns(const assay_basis *basis)
+{
+    static const double angles[] = {0.0, 0.3, -2.0, 3.14159, 100.0, 123456.789};
+    double              before[2 * MAX_COUNT], after[2 * MAX_COUNT], u[MAX_COUNT], v[MAX_COUNT];
+    const size_t        count = assay_basis_count(basis);
+    for (size_t a = 0; a < sizeof angles / sizeof angles[0]; a++) {
+        const double     c = cos(angles[a]), s = sin(angles[a]);
+        const assay_vec3 d      = {0.48, -0.6, 0.64},
+                         turned = {c * d.x - s * d.y, s * d.x + c * d.y, d.z};
+        assay_basis_evaluate(basis, d, u);
+        assay_basis_evaluate(basis, turned, v);
+        double sum[2] = {0.0, 0.0}, sum_turned[2] = {0.0, 0.0};
+        for (size_t i = 0; i < 2 * count; i++) {
+            before[i] = after[i] = sin(1.0 + (double)i * (double)i);
+        }
+        assert_int_equal(assay_basis_rotate_z(basis, angles[a], 2, after), ASSAY_OK);
+        for (size_t i = 0; i < 2 * count; i++) {
+            sum[i / count] += before[i] * u[i % count];
+            sum_turned[i / count] += after[i] * v[i % count];
+        }
+        assert_near(sum_turned[0], sum[0], 2e-13);
+        assert_near(sum_turned[1], sum[1], 2e-13);
+    }
+}
+
 static void test_rotation_about_z(void **state)
 {
-    static const double angles[] = {0.0, 0.3, -2.0, 3.14159, 100.0, 1e5};
-    double              before[2 * MAX_COUNT], after[2 * MAX_COUNT], u[MAX_COUNT], v[MAX_COUNT];
     for (int kind = 0; kind < ASSAY_BASIS_KIND_COUNT; kind++) {
         assay_basis *basis = create(*state, (assay_basis_kind)kind, 12);
-        const size_t count = assay_basis_count(basis);
-        for (size_t a = 0; a < sizeof angles / sizeof angles[0]; a++) {
-            const double     c = cos(angles[a]), s = sin(angles[a]);
-            const assay_vec3 d      = {0.48, -0.6, 0.64},
-                             turned = {c * d.x - s * d.y, s * d.x + c * d.y, d.z};
-            assay_basis_evaluate(basis, d, u);
-            assay_basis_evaluate(basis, turned, v);
-            double sum[2] = {0.0, 0.0}, sum_turned[2] = {0.0, 0.0};
-            for (size_t i = 0; i < 2 * count; i++) {
-                before[i] = after[i] = sin(1.0 + (double)i * (double)i);
-            }
-            assert_int_equal(assay_basis_rotate_z(basis, angles[a], 2, after), ASSAY_OK);
-            for (size_t i = 0; i < 2 * count; i++) {
-                sum[i / count] += before[i] * u[i % count];
-                sum_turned[i / count] += after[i] * v[i % count];
-            }
-            assert_near(sum_turned[0], sum[0], 2e-13 * (1.0 + 1e-2 * fabs(angles[a])));
-            assert_near(sum_turned[1], sum[1], 2e-13 * (1.0 + 1e-2 * fabs(angles[a])));
-        }
+        check_turns(basis);
+        assay_basis_destroy(basis);
+    }
+    for (int convention = 1; convention < ASSAY_CONVENTION_COUNT; convention++) {
+        assay_basis *basis = NULL;
+        assert_int_equal(
+            assay_basis_create(*state, ASSAY_BASIS_SH, 3, (assay_convention)convention, &basis),
+            ASSAY_OK);
+        check_turns(basis);
         assay_basis_destroy(basis);
     }
 }

@@ -256,7 +256,7 @@ static void test_parity(void **state)
 /* Many directions, of every number up to 9, have the bits of each alone. */
 static void test_batch(void **state)
 {
-    static double    many[9 * MAX_COUNT];
+    static double    many[9 * MAX_COUNT + 1];
     static const int orders[4] = {1, 3, 16, 33};
     double           one[MAX_COUNT];
     assay_vec3       d[9];

@@ -208,7 +208,7 @@ static void test_orders(void **state)
 {
     assay_context *context = context_of(state);
     assay_basis   *small   = hsh_basis(context, 6, ASSAY_CONVENTION_PLAIN);
-    assay_basis   *large   = hsh_basis(context, 14, ASSAY_CONVENTION_PLAIN);
+    assay_basis   *large   = hsh_basis(context, 20, ASSAY_CONVENTION_PLAIN);
     assay_basis   *thesis  = hsh_basis(context, 6, ASSAY_CONVENTION_THESIS);
     double *a = hsh_turned(small, context, EXACT, 0.4), *b = hsh_turned(large, context, EXACT, 0.4);
     double *c = hsh_turned(thesis, context, EXACT, 0.4), worst = 0.0;
@@ -217,11 +217,11 @@ static void test_orders(void **state)
             int l = 0, m = 0, k = 0;
             assay_basis_function(small, i, &l, &m);
             assay_basis_function(small, j, &l, &k);
-            worst = fmax(worst, fabs(a[i * 36 + j] - b[i * 196 + j]));
+            worst = fmax(worst, fabs(a[i * 36 + j] - b[i * 400 + j]));
             assert_near(c[i * 36 + j], ((m - k) & 1 ? -1.0 : 1.0) * a[i * 36 + j], 1e-15);
         }
     }
-    printf("# M_R of order 6 in that of order 14: off by %.2g\n", worst);
+    printf("# M_R of order 6 in that of order 20: off by %.2g\n", worst);
     assert_true(worst <= 1e-14);
     free(a);
     free(b);
