@@ -235,14 +235,13 @@ typedef struct {
     double          phi_out;          /* rad                   */
 } assay_lobe;
 
-/* Value for light from wi (unit; 0 below the horizon), and the energy integral of its square over
- * the hemisphere.  Errors: DOMAIN. */
+/* Value for light from wi (unit; 0 below the horizon).  Errors: DOMAIN. */
 ASSAY_API assay_status assay_lobe_value(const assay_lobe *lobe, assay_vec3 wi, double *value_out);
 
 /* Share of the lobe's energy that the basis captures (eq. 3.32, made well defined: docs/methods/
- * basis.md), for orders 1 ... basis order: accuracy_out[order - 1], with the number of functions
- * that are not zero by symmetry of construction in count_out (may be NULL).
- * Errors: ARGUMENT, DOMAIN, MEMORY. */
+ * basis-accuracy.md), for orders 1 ... basis order: accuracy_out[order - 1], with the number of
+ * functions that this order of the basis has in count_out (may be NULL).  LSOSH: at any order.
+ * Errors: DOMAIN (the lobe, or it is too narrow for the quadrature), MEMORY, CANCELLED. */
 ASSAY_API assay_status assay_basis_accuracy(const assay_basis *basis, assay_context *context,
                                             const assay_lobe *lobe, double *accuracy_out,
                                             size_t *count_out);
