@@ -45,8 +45,8 @@ BENCHES := $(BENCH_C:%.c=$(BUILD)/%)
 OURS    := $(wildcard include/assay/*.h src/*/*.[ch] src/*/*/*.[ch] src/*/*.cpp scenes/gen/*.[ch] \
              refdata/gen/*.[ch] tests/*/*.[ch])
 
-.PHONY: all help deps deps-test demo test install uninstall scenes ref ref-update layers format \
-        lint bench mutants check-sanitize check-arm64 fuzz clean
+.PHONY: all help deps deps-test demo test install uninstall scenes ref ref-update figures layers \
+        format lint bench mutants check-sanitize check-arm64 fuzz clean
 all: $(BUILD)/assay ## build the command
 
 help: ## list the targets
@@ -172,6 +172,16 @@ ref-update: ## make the certified tables again and put them in place
 	@$(call install_missing,$(DEPS_REF))
 	@$(MAKE) --no-print-directory -s $(REF_TOOLS)
 	@refdata/gen/make_tables.sh update $(REF_TOOLS)
+
+# ---- pictures ----
+FIGURES := docs/images
+figures: all ## draw the pictures of docs/methods/basis-accuracy.md again
+	@set -e; for t in 0 30 60 80; do \
+	   $(BUILD)/assay basis plot --accuracy --lobe phong:5@$$t --size 560 -o $(FIGURES)/accuracy-phong-$$t.png; done; \
+	 for t in 0 30 60 75; do \
+	   $(BUILD)/assay basis plot --accuracy --lobe ward:0.2,0.5@$$t --size 560 -o $(FIGURES)/accuracy-ward-$$t.png; done; \
+	 for f in "1 0" "1 1" "2 0" "2 1" "2 2" "3 1"; do set -- $$f; \
+	   $(BUILD)/assay basis plot --basis hsh --l $$1 --m $$2 --size 200 -o $(FIGURES)/hsh-$$1-$$2.png; done
 
 # ---- order in the house ----
 layers: ## check that every include follows src/layers.txt

@@ -107,8 +107,9 @@ typedef void (*assay_direction_function)(void *user, assay_vec3 direction, doubl
  * mapped so that the ends of the hemisphere do not spoil it) times the trapezium rule in phi
  * (phi_nodes): exact, up to rounding, for what the nodes resolve.  Hemispherical bases integrate
  * over z >= 0; Makhotkin's with its weight cos(theta); LSOSH solves for the best fit.
+ * f is called from the calling thread, once a node, in a fixed order.
  * coefficients_out: channels rows of count.  Errors: ARGUMENT (nodes < 1 or > 65536, channels < 1),
- * DOMAIN (f gave a number that is not finite, or LSOSH is singular at this order), MEMORY. */
+ * DOMAIN (f gave a number that is not finite, or LSOSH beyond order 14: singular), MEMORY. */
 ASSAY_API assay_status assay_basis_project(const assay_basis *basis, assay_context *context,
                                            assay_direction_function f, void *user, int channels,
                                            int theta_nodes, int phi_nodes,
@@ -122,7 +123,7 @@ ASSAY_API assay_status assay_basis_project_random(const assay_basis *basis, assa
                                                   double *coefficients_out, double *variances_out);
 
 /* The same from samples that somebody else took: values: rows of `channels`; pdf: density of each
- * direction, 1/sr, > 0. */
+ * direction, 1/sr, > 0.  In a hemispherical basis a sample below the horizon counts as 0. */
 ASSAY_API assay_status assay_basis_project_samples(const assay_basis *basis, assay_context *context,
                                                    size_t            sample_count,
                                                    const assay_vec3 *directions, const double *pdf,
@@ -234,14 +235,13 @@ typedef struct {
     double          phi_out;          /* rad                   */
 } assay_lobe;
 
-/* Value for light from wi (unit; 0 below the horizon), and the energy integral of its square over
- * the hemisphere.  Errors: DOMAIN. */
+/* Value for light from wi (unit; 0 below the horizon).  Errors: DOMAIN. */
 ASSAY_API assay_status assay_lobe_value(const assay_lobe *lobe, assay_vec3 wi, double *value_out);
 
 /* Share of the lobe's energy that the basis captures (eq. 3.32, made well defined: docs/methods/
- * basis.md), for orders 1 ... basis order: accuracy_out[order - 1], with the number of functions
- * that are not zero by symmetry of construction in count_out (may be NULL).
- * Errors: ARGUMENT, DOMAIN, MEMORY. */
+ * basis-accuracy.md), for orders 1 ... basis order: accuracy_out[order - 1], with the number of
+ * functions that this order of the basis has in count_out (may be NULL).  LSOSH: at any order.
+ * Errors: DOMAIN (the lobe, or it is too narrow for the quadrature), MEMORY, CANCELLED. */
 ASSAY_API assay_status assay_basis_accuracy(const assay_basis *basis, assay_context *context,
                                             const assay_lobe *lobe, double *accuracy_out,
                                             size_t *count_out);
@@ -250,7 +250,7 @@ ASSAY_API assay_status assay_basis_accuracy(const assay_basis *basis, assay_cont
  * directions by the paraboloid map, eq. 3.35, 3.36; texels outside the hemisphere hold what the
  * nearest direction on the horizon has. */
 typedef struct assay_brdf_grid assay_brdf_grid;
-/* What a BRDF times cos(theta_i) is for wo, wi; channels 1. */
+/* What a BRDF times cos(theta_i) is for wo, wi, both z >= 0; finite also where wo.z = 0. */
 typedef double (*assay_brdf_function)(void *user, assay_vec3 wo, assay_vec3 wi);
 ASSAY_API assay_status assay_brdf_grid_create(const assay_basis *basis, assay_context *context,
                                               assay_brdf_function f, void *user, int side,

@@ -22,11 +22,14 @@ typedef struct {
     const double *x, *y;
 } assay_plot_curve;
 
+/* Names are printable ASCII.  The frame is [x_min, x_max] x [y_min, y_max]: within +-1e9, and min
+ * below max by 1e-6 of the larger of them, or of 1.  Curves are drawn in this order, and cut off
+ * where they leave the frame. */
 typedef struct {
-    const char             *title, *x_label, *y_label;  /* printable ASCII                  */
-    double                  x_min, x_max, y_min, y_max; /* the frame; min < max, finite    */
-    size_t                  curve_count;                /* at most ASSAY_PLOT_MAX_CURVES   */
-    const assay_plot_curve *curves; /* drawn in this order; what is outside is cut off     */
+    const char             *title, *x_label, *y_label;
+    double                  x_min, x_max, y_min, y_max;
+    size_t                  curve_count; /* at most ASSAY_PLOT_MAX_CURVES */
+    const assay_plot_curve *curves;
 } assay_plot;
 
 /* Ticks at round numbers, the legend at the lower right.  width, height: 200 ... 4096.

@@ -25,7 +25,7 @@
 #include "core/numerics.h"
 #include "math/quadrature.h"
 
-enum { FIRST_NODES = 32, MOST_NODES = 1024 };
+enum { FIRST_NODES = 32, MOST_NODES = 2048 };
 static const double TOLERANCE = 1e-13;
 /* What still counts as converged when the nodes are used up. */
 static const double LAST_TOLERANCE = 1e-9;
@@ -48,6 +48,7 @@ typedef struct {
     double               *functions, *row, *sum; /* count */
     double                row_energy, energy;
     assay_vec3            outgoing;
+    double                negligible; /* of the lobe's values: 2^-64 of their bound */
 } measure;
 
 /* Angles over [-pi/2, pi/2 - gap]. */
@@ -75,7 +76,7 @@ static assay_status add_node(measure *m, const angle_node *psi, const angle_node
                            psi->cos * alpha->cos};
     const double     f  = assay_lobe_at(m->lobe, m->outgoing, d);
     const double     dw = psi->cos * psi->weight * alpha->weight;
-    if (f == 0.0) {
+    if (!(f > m->negligible)) {
         return ASSAY_OK;
     }
     const assay_status status = assay_analysis_evaluate(m->analysis, d, m->functions);
@@ -188,19 +189,28 @@ static void count_functions(const assay_basis *basis, size_t *count_out)
     }
 }
 
+/* No value of the lobe is larger. */
+static double bound_of(const assay_lobe *lobe, assay_vec3 outgoing)
+{
+    return lobe->kind == ASSAY_LOBE_PHONG
+               ? 1.0
+               : 1.0 / (4.0 * ASSAY_PI * lobe->alpha_x * lobe->alpha_y * sqrt(outgoing.z));
+}
+
 static void prepare(measure *m, const assay_lobe *lobe, double *work)
 {
     const double turn = lobe->kind == ASSAY_LOBE_PHONG ? lobe->phi_out : 0.0;
 
-    m->lobe      = lobe;
-    m->turn      = assay_sincos_radians(turn);
-    m->gap       = lobe->kind == ASSAY_LOBE_PHONG ? lobe->theta_out : 0.0;
-    m->node      = work;
-    m->weight    = work + MOST_NODES;
-    m->functions = work + 2 * MOST_NODES;
-    m->row       = m->functions + m->count;
-    m->sum       = m->row + m->count;
-    m->outgoing  = assay_lobe_outgoing(lobe);
+    m->lobe       = lobe;
+    m->turn       = assay_sincos_radians(turn);
+    m->gap        = lobe->kind == ASSAY_LOBE_PHONG ? lobe->theta_out : 0.0;
+    m->node       = work;
+    m->weight     = work + MOST_NODES;
+    m->functions  = work + 2 * MOST_NODES;
+    m->row        = m->functions + m->count;
+    m->sum        = m->row + m->count;
+    m->outgoing   = assay_lobe_outgoing(lobe);
+    m->negligible = 0x1p-64 * bound_of(lobe, m->outgoing);
 }
 
 assay_status assay_basis_accuracy(const assay_basis *basis, assay_context *context,
@@ -216,10 +226,9 @@ assay_status assay_basis_accuracy(const assay_basis *basis, assay_context *conte
     assay_status    status   = assay_analysis_create(context, basis, false, &analysis);
     double *work = assay_allocate(context, 2 * MOST_NODES + 3 * count + 2 * order, sizeof *work);
     angle_node *angles = assay_allocate(context, 2 * MOST_NODES, sizeof *angles);
-    if (status == ASSAY_OK && (!work || !angles)) {
-        status = assay_fail_memory(context, "an accuracy");
-    }
-    if (status == ASSAY_OK) {
+    if (!work || !angles) {
+        status = status == ASSAY_OK ? assay_fail_memory(context, "an accuracy") : status;
+    } else if (status == ASSAY_OK) {
         prepare(&m, lobe, work);
         m.analysis       = analysis;
         m.psi            = angles;

@@ -159,10 +159,11 @@ static void reduce(const assay_triangle_raster *raster, int size, const assay_ch
         for (int x = 0; x < size; x++) {
             float sum[3] = {0.0f, 0.0f, 0.0f};
             for (int i = 0; i < SAMPLES * SAMPLES; i++) {
-                const size_t row = (size_t)(y * SAMPLES + i / SAMPLES);
-                const size_t at  = row * (size_t)raster->side + (size_t)(x * SAMPLES + i % SAMPLES);
+                const int    row = y * SAMPLES + i / SAMPLES, column = x * SAMPLES + i % SAMPLES;
+                const float *color =
+                    raster->color + 3 * ((size_t)row * (size_t)raster->side) + 3 * (size_t)column;
                 for (int c = 0; c < 3; c++) {
-                    sum[c] += raster->color[3 * at + (size_t)c];
+                    sum[c] += color[c];
                 }
             }
             for (int c = 0; c < 3; c++) {
@@ -209,6 +210,26 @@ static assay_status make_image(assay_context *context, const drawing *d, int siz
     return ASSAY_OK;
 }
 
+/* values: count; radius: (RINGS + 1) rows of SECTORS. */
+static assay_status draw(assay_context *context, const assay_basis *basis, size_t i, int size,
+                         double *values, double *radius, assay_image **image_out)
+{
+    const bool   hemisphere = assay_basis_kind_is_hemispherical(assay_basis_kind_of(basis));
+    drawing      d          = {.raster.context = context};
+    assay_status status     = sample(basis, i, hemisphere, values, radius);
+    if (status == ASSAY_OK) {
+        status = assay_triangle_raster_create(context, SAMPLES * size, &d.raster);
+    }
+    if (status == ASSAY_OK) {
+        look(&d, SAMPLES * size, hemisphere);
+        add_axes(&d);
+        add_lobes(&d, hemisphere, radius);
+        status = make_image(context, &d, size, image_out);
+    }
+    assay_triangle_raster_destroy(&d.raster);
+    return status;
+}
+
 assay_status assay_basis_draw(assay_context *context, const assay_basis *basis, size_t i, int size,
                               assay_image **image_out)
 {
@@ -218,23 +239,11 @@ assay_status assay_basis_draw(assay_context *context, const assay_basis *basis, 
                           "have from %d to %d pixels",
                           i, size, assay_basis_count(basis), MIN_SIZE, MAX_SIZE);
     }
-    const bool   hemisphere = assay_basis_kind_is_hemispherical(assay_basis_kind_of(basis));
-    double      *values     = assay_allocate(context, assay_basis_count(basis), sizeof *values);
-    double      *radius     = assay_allocate(context, (RINGS + 1) * SECTORS, sizeof *radius);
-    drawing      d          = {.raster.context = context};
-    assay_status status     = values && radius
-                                  ? assay_triangle_raster_create(context, SAMPLES * size, &d.raster)
-                                  : assay_fail_memory(context, "a picture");
-    if (status == ASSAY_OK) {
-        status = sample(basis, i, hemisphere, values, radius);
-    }
-    if (status == ASSAY_OK) {
-        look(&d, SAMPLES * size, hemisphere);
-        add_axes(&d);
-        add_lobes(&d, hemisphere, radius);
-        status = make_image(context, &d, size, image_out);
-    }
-    assay_triangle_raster_destroy(&d.raster);
+    double      *values = assay_allocate(context, assay_basis_count(basis), sizeof *values);
+    double      *radius = assay_allocate(context, (RINGS + 1) * SECTORS, sizeof *radius);
+    assay_status status = values && radius
+                              ? draw(context, basis, i, size, values, radius, image_out)
+                              : assay_fail_memory(context, "a picture");
     assay_release(context, values);
     assay_release(context, radius);
     return status;

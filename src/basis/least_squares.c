@@ -5,9 +5,9 @@
  *
  *     (1 - z^2)^(m/2) times polynomials of degree < order - m,
  *
- * get an orthonormal basis q first, whose recurrence is found from its own values (Stieltjes), and
- * then Y = q R with R triangular: G = R^T R, but c = R^-1 (integral of f q) has only the root of
- * G's condition number.
+ * get an orthonormal basis q first, whose recurrence is found from its own values (Stieltjes,
+ * [gautschi04]), and then Y = q R with R triangular: G = R^T R, but c = R^-1 (integral of f q) has
+ * only the root of G's condition number.
  *
  * Invariant: for every m, terms(m) = order - m functions q_k = (1 - z^2)^(m/2) p_k(z) azimuth_m,
  * p_(k+1) = ((z - centre_k) p_k - slope_k p_(k-1)) / slope_(k+1), orthonormal over the hemisphere;

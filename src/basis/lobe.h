@@ -9,7 +9,7 @@ const char *assay_lobe_problem(const assay_lobe *lobe);
 
 assay_vec3 assay_lobe_outgoing(const assay_lobe *lobe);
 
-/* For a sound lobe, its outgoing direction and a unit wi. */
-double assay_lobe_at(const assay_lobe *lobe, assay_vec3 outgoing, assay_vec3 wi);
+/* For a sound lobe, its outgoing direction wo and a unit wi. */
+double assay_lobe_at(const assay_lobe *lobe, assay_vec3 wo, assay_vec3 wi);
 
 #endif

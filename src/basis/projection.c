@@ -60,6 +60,11 @@ static assay_status integrate(projection *p)
 {
     const size_t total = p->channels * p->count;
     for (int i = 0; i < p->rule.rings; i++) {
+        const assay_status going =
+            assay_progress(p->context, "project", (uint64_t)i, (uint64_t)p->rule.rings);
+        if (going != ASSAY_OK) {
+            return going;
+        }
         for (size_t k = 0; k < total; k++) {
             p->ring[k] = 0.0;
         }

@@ -13,6 +13,8 @@
 #include "core/numerics.h"
 #include "core/random.h"
 
+enum { PROGRESS_STEP = 4096 };
+
 typedef struct {
     assay_context  *context;
     assay_analysis *analysis;
@@ -102,9 +104,14 @@ static assay_status take_random(estimate *e, const assay_basis *basis, assay_dir
     const bool   hemisphere = assay_basis_kind_is_hemispherical(assay_basis_kind_of(basis));
     const double pdf        = (hemisphere ? 0.5 : 0.25) * ASSAY_INV_PI;
     for (uint64_t s = 0; s < samples; s++) {
+        assay_status status =
+            s % PROGRESS_STEP == 0 ? assay_progress(e->context, "project", s, samples) : ASSAY_OK;
+        if (status != ASSAY_OK) {
+            return status;
+        }
         const assay_vec3 d = draw(hemisphere, seed, s);
         f(user, d, e->values);
-        assay_status status = assay_projection_check(e->context, e->values, e->channels, d);
+        status = assay_projection_check(e->context, e->values, e->channels, d);
         if (status == ASSAY_OK) {
             status = assay_analysis_evaluate(e->analysis, d, e->functions);
         }

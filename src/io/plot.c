@@ -63,15 +63,35 @@ static double tick_step(double range, int most, int *decimals_out)
     }
 }
 
+/* Multiples of a step, from the first one in the range on. */
+typedef struct {
+    double step, first;
+    int    count, decimals;
+} tick_row;
+
+static tick_row find_ticks(double low, double high)
+{
+    tick_row ticks;
+    ticks.step  = tick_step(high - low, 10, &ticks.decimals);
+    ticks.first = ceil(low / ticks.step - 1e-9);
+    ticks.count = (int)(floor(high / ticks.step + 1e-9) - ticks.first) + 1;
+    return ticks;
+}
+
+/* Its value, with its digits in text (40 characters); never -0. */
+static double read_tick(const tick_row *ticks, int i, char *text)
+{
+    const double value = (ticks->first + i) * ticks->step + 0.0;
+    snprintf(text, 40, "%.*f", ticks->decimals, value);
+    return value;
+}
+
 static void draw_x_ticks(const frame *f)
 {
-    int          decimals;
-    const double step  = tick_step(f->plot->x_max - f->plot->x_min, 10, &decimals);
-    const double first = ceil(f->plot->x_min / step - 1e-9);
-    for (double i = first; i * step <= f->plot->x_max + 1e-9 * step; i += 1.0) {
-        const double x = across(f, i * step);
+    const tick_row ticks = find_ticks(f->plot->x_min, f->plot->x_max);
+    for (int i = 0; i < ticks.count; i++) {
         char         text[40];
-        snprintf(text, sizeof text, "%.*f", decimals, i * step + 0.0);
+        const double x = across(f, read_tick(&ticks, i, text));
         assay_canvas_stroke(&f->canvas, x, f->top, x, f->bottom, 1.0, GRID);
         assay_canvas_text(&f->canvas, x - 0.5 * assay_text_width(f->letter, text),
                           f->bottom + 2.0 * f->letter, f->letter, false, INK, text);
@@ -81,14 +101,11 @@ static void draw_x_ticks(const frame *f)
 /* Gives the width of the widest number. */
 static double draw_y_ticks(const frame *f)
 {
-    int          decimals;
-    double       widest = 0.0;
-    const double step   = tick_step(f->plot->y_max - f->plot->y_min, 10, &decimals);
-    const double first  = ceil(f->plot->y_min / step - 1e-9);
-    for (double i = first; i * step <= f->plot->y_max + 1e-9 * step; i += 1.0) {
-        const double y = down(f, i * step);
+    double         widest = 0.0;
+    const tick_row ticks  = find_ticks(f->plot->y_min, f->plot->y_max);
+    for (int i = 0; i < ticks.count; i++) {
         char         text[40];
-        snprintf(text, sizeof text, "%.*f", decimals, i * step);
+        const double y     = down(f, read_tick(&ticks, i, text));
         const double width = assay_text_width(f->letter, text);
         widest             = fmax(widest, width);
         assay_canvas_stroke(&f->canvas, f->left, y, f->right, y, 1.0, GRID);
@@ -189,8 +206,8 @@ static void draw_legend(const frame *f)
     const double left   = f->right - widest - 6.0 * f->letter;
     const double bottom = f->bottom - f->letter;
     const double top    = bottom - line * (double)f->plot->curve_count - 0.6 * f->letter;
-    for (double y = top; y <= bottom; y += 1.0) {
-        assay_canvas_stroke(&f->canvas, left, y, f->right - f->letter, y, 2.0,
+    for (int i = 0; i <= (int)(bottom - top); i++) {
+        assay_canvas_stroke(&f->canvas, left, top + i, f->right - f->letter, top + i, 2.0,
                             (assay_rgb){1.0, 1.0, 1.0});
     }
     for (size_t i = 0; i < f->plot->curve_count; i++) {
@@ -203,6 +220,13 @@ static void draw_legend(const frame *f)
     }
 }
 
+/* What ticks can be counted on. */
+static bool is_range(double low, double high)
+{
+    const double largest = fmax(1.0, fmax(fabs(low), fabs(high)));
+    return high - low >= 1e-6 * largest && largest <= 1e9;
+}
+
 static assay_status check(assay_context *context, const assay_plot *p, int width, int height)
 {
     if (width < MIN_SIZE || height < MIN_SIZE || width > MAX_SIZE || height > MAX_SIZE) {
@@ -210,11 +234,11 @@ static assay_status check(assay_context *context, const assay_plot *p, int width
                           "a plot of %d x %d pixels: from %d to %d each way are possible", width,
                           height, MIN_SIZE, MAX_SIZE);
     }
-    if (!isfinite(p->x_min) || !isfinite(p->x_max) || !isfinite(p->y_min) || !isfinite(p->y_max) ||
-        !(p->x_max - p->x_min > 1e-9) || !(p->y_max - p->y_min > 1e-9) ||
+    if (!is_range(p->x_min, p->x_max) || !is_range(p->y_min, p->y_max) ||
         p->curve_count > ASSAY_PLOT_MAX_CURVES) {
         return assay_fail(context, ASSAY_ERR_ARGUMENT,
-                          "a plot needs axes with min < max, finite, and at most %d curves",
+                          "a plot needs axes with min < max, within +-1e9 and a millionth of that "
+                          "apart, and at most %d curves",
                           ASSAY_PLOT_MAX_CURVES);
     }
     for (size_t c = 0; c < p->curve_count; c++) {

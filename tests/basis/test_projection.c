@@ -298,6 +298,26 @@ static assay_status project_all_ways(assay_context *context, void *user)
     return status;
 }
 
+/* Both ways ask whether to go on, and end where the answer is no. */
+static void stopped_on_the_way(void **state)
+{
+    (void)state;
+    for (int random = 0; random < 2; random++) {
+        failing_memory stopping = {.cancel_at = 2};
+        assay_context *context  = failing_context(&stopping);
+        assay_basis   *basis    = make(context, ASSAY_BASIS_SH, 1);
+        double         c = 9.0, v = 9.0;
+        assert_int_equal(
+            random ? assay_basis_project_random(basis, context, one, NULL, 1, 10000, 0, &c, &v)
+                   : assay_basis_project(basis, context, one, NULL, 1, 10, 1, &c),
+            ASSAY_ERR_CANCELLED);
+        assert_true(c == 9.0 && v == 9.0);
+        assay_basis_destroy(basis);
+        assert_int_equal(stopping.live, 1);
+        assay_context_destroy(context);
+    }
+}
+
 static void refused_memory(void **state)
 {
     (void)state;
@@ -315,6 +335,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(bad_input_leaves_outputs_alone, set_up, tear_down),
         cmocka_unit_test_setup_teardown(least_squares_are_least, set_up, tear_down),
         cmocka_unit_test_setup_teardown(least_squares_hold_up_to_order_14, set_up, tear_down),
+        cmocka_unit_test(stopped_on_the_way),
         cmocka_unit_test(refused_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
