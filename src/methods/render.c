@@ -57,7 +57,12 @@ static assay_status find_camera(const assay_scene *scene, const char *name, doub
     return ASSAY_OK;
 }
 
-static assay_status check_options(assay_context *context, const assay_render_options *options)
+/* A dump holds three channels of the image once more while it writes them, and then the file that
+ * they became, which is hardly larger. */
+enum { DUMP_PIXEL_BYTES = 2 * 3 * (int)sizeof(float) };
+
+static assay_status check_options(assay_context *context, const assay_render_options *options,
+                                  assay_layer_set *layers_out)
 {
     if (options->width < 1 || options->height < 1 || options->width > ASSAY_IMAGE_MAX_SIDE ||
         options->height > ASSAY_IMAGE_MAX_SIDE) {
@@ -65,13 +70,10 @@ static assay_status check_options(assay_context *context, const assay_render_opt
                           "an image must be 1 to %d pixels a side, not %d x %d",
                           ASSAY_IMAGE_MAX_SIDE, options->width, options->height);
     }
-    /* The film says so, too, but only after the tree is built. */
-    if ((uint64_t)options->width * (uint64_t)options->height > ASSAY_FILM_MAX_PIXELS) {
-        return assay_fail(context, ASSAY_ERR_LIMIT,
-                          "an image of %d x %d is too large to render: at most %u pixels",
-                          options->width, options->height, ASSAY_FILM_MAX_PIXELS);
-    }
-    return ASSAY_OK;
+    const assay_status status = assay_layers_parse(context, options->layers, layers_out);
+    return status != ASSAY_OK ? status
+                              : assay_film_ask(context, options->width, options->height,
+                                               *layers_out, options->dump ? DUMP_PIXEL_BYTES : 0);
 }
 
 /* ---- metadata ---- */
@@ -209,10 +211,7 @@ assay_status assay_render(assay_scene *scene, const char *method_name, const ass
                            .seed    = options->seed};
     assay_status status = assay_run_find(context, method_name, &method);
     if (status == ASSAY_OK) {
-        status = check_options(context, options);
-    }
-    if (status == ASSAY_OK) {
-        status = assay_layers_parse(context, options->layers, &frame.layers);
+        status = check_options(context, options, &frame.layers);
     }
     if (status == ASSAY_OK) {
         const double aspect = (double)options->width / (double)options->height;

@@ -10,6 +10,7 @@
 #include "assay/image.h"
 #include "core/alloc.h"
 #include "core/context.h"
+#include "io/image_decode.h"
 #include "scene/environment.h"
 #include "scene/gltf_loader.h"
 #include "scene/scene_build.h"
@@ -134,10 +135,12 @@ static assay_status load_environment(assay_gltf_loader *loader)
     char name[512];
     assay_text_clean(options->environment_path, name, sizeof name);
     assay_status status = assay_gltf_read_file(loader, options->environment_path, name, &bytes);
-    assay_gltf_release_bytes(loader->context, &bytes);
     if (status == ASSAY_OK) {
-        status = assay_image_read(loader->context, options->environment_path, &image);
+        static const char *const channels[] = {"R", "G", "B", NULL};
+        status = assay_image_decode(loader->context, bytes.bytes, (size_t)bytes.count, name,
+                                    channels, &image);
     }
+    assay_gltf_release_bytes(loader->context, &bytes);
     if (status == ASSAY_OK) {
         status = assay_environment_create(loader->context, image, options->environment_scale,
                                           options->environment_rotation, options->environment_path,
