@@ -124,11 +124,27 @@ static assay_status build_scratch(assay_gltf_loader *loader)
     return assay_scene_build_scratch(loader->scene);
 }
 
+/* Until here the hash has seen the scene's own files alone; a copy of it ends here. */
+static void finish_files_digest(const assay_gltf_loader *loader)
+{
+    assay_hash files = loader->hash;
+    assay_hash_finish(&files, loader->scene->files_digest);
+}
+
+static void digest_of(const assay_gltf_bytes *bytes, char digest_out[65])
+{
+    assay_hash hash;
+    assay_hash_start(&hash);
+    assay_hash_add(&hash, bytes->bytes, (size_t)bytes->count);
+    assay_hash_finish(&hash, digest_out);
+}
+
 static assay_status load_environment(assay_gltf_loader *loader)
 {
     const assay_scene_options *options = &loader->scene->options;
     assay_gltf_bytes           bytes   = {0};
     assay_image               *image   = NULL;
+    finish_files_digest(loader);
     if (!options->environment_path) {
         return ASSAY_OK;
     }
@@ -137,6 +153,7 @@ static assay_status load_environment(assay_gltf_loader *loader)
     assay_status status = assay_gltf_read_file(loader, options->environment_path, name, &bytes);
     if (status == ASSAY_OK) {
         static const char *const channels[] = {"R", "G", "B", NULL};
+        digest_of(&bytes, loader->scene->environment_digest);
         status = assay_image_decode(loader->context, bytes.bytes, (size_t)bytes.count, name,
                                     channels, &image);
     }
