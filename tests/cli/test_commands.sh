@@ -40,6 +40,34 @@ for command in render scene methods diff; do
     [ -z "$missing" ]
     result $? "$command --help names every option of its table $missing"
 done
+# The man page has a section a command, and in it every option of the help with its argument, and no
+# other.
+man_options() { # COMMAND
+    sed 's/\\f[A-Z]//g; s/\\//g' "$man" | awk -v command="assay $1" '
+        /^\.S[SH]/ { in_section = index($0, "\"" command "\"") > 0 }
+        in_section && after && sub(/^(-., )?--/, "--") { print }
+        { after = /^\.TP/ }' | sort
+}
+help_options() { # COMMAND
+    "$assay" $1 --help | sed -n '/^Parameters of/q; s/^  \(-., \|    \)\(--[a-z-]*\) \([^ ]*\).*/\2 \3/p' |
+        sed 's/ $//' | sort
+}
+same_options() { # COMMAND
+    man_options $1 > "$folder/man"
+    help_options $1 > "$folder/help"
+    [ -s "$folder/help" ] && diff "$folder/man" "$folder/help" > "$folder/difference"
+}
+man=docs/assay.1
+for command in render scene methods diff; do
+    same_options $command || sed 's/^/# /' "$folder/difference"
+    same_options $command
+    result $? "the man page has the options of $command"
+done
+grep -v 'heat.-map' docs/assay.1 > "$folder/cut.1"
+man=$folder/cut.1
+! same_options diff
+result $? "mutant: an option that the man page lacks is seen"
+
 refuses "unknown command" 2 "frobnicate" frobnicate
 refuses "unknown command that looks like an option" 2 "--frobnicate" --frobnicate
 for command in scene methods diff; do
