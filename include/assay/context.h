@@ -8,6 +8,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "assay/status.h"
 
@@ -41,6 +42,10 @@ typedef struct {
     assay_log_callback      log;       /* may be NULL                                        */
     assay_progress_callback progress;  /* may be NULL                                        */
     void                   *user;      /* handed to log and progress                         */
+    /* Bytes that all objects of the context may hold together; what would exceed them fails with
+     * ASSAY_ERR_MEMORY.  0: what the machine and its control groups have to give when the context
+     * is made, less a reserve; UINT64_MAX: no limit.  Never changes a result. */
+    uint64_t memory_limit;
 } assay_context_options;
 
 /* options may be NULL (all defaults).  Errors: ARGUMENT, MEMORY. */
@@ -55,11 +60,16 @@ ASSAY_API const char *assay_context_error(const assay_context *context);
 /* Worker threads in use, at least 1. */
 ASSAY_API int assay_context_threads(const assay_context *context);
 
+/* The limit in force, UINT64_MAX for none, and what its objects hold now, bytes.  (Embree's tree
+ * counts; what OpenEXR, libpng and the like need while a file is read or written does not.) */
+ASSAY_API uint64_t assay_context_memory_limit(const assay_context *context);
+ASSAY_API uint64_t assay_context_memory_used(const assay_context *context);
+
 /* Releases a text that a call made; NULL is legal. */
 ASSAY_API void assay_text_destroy(assay_context *context, char *text);
 
-/* Writes a text to a file, beside and then renamed: on any error the file of that name is as it
- * was. Errors: WRITE, MEMORY. */
+/* Writes a text to a file, with a newline at its end where it has none; beside and then renamed: on
+ * any error the file of that name is as it was. Errors: WRITE, MEMORY. */
 ASSAY_API assay_status assay_text_write(assay_context *context, const char *path, const char *text);
 
 /* "0.1.0"; borrowed. */

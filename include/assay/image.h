@@ -30,8 +30,10 @@ typedef struct {
 /* Largest width and height, and largest width * height, of any image made or read. */
 #define ASSAY_IMAGE_MAX_SIDE 65536
 #define ASSAY_IMAGE_MAX_PIXELS (1u << 28)
+/* Largest width * height of an image that is rendered. */
+#define ASSAY_RENDER_MAX_PIXELS (1u << 26)
 
-/* An image without channels.  Errors: ARGUMENT (a side 0 or too large), MEMORY. */
+/* An image without channels.  Errors: ARGUMENT (a side 0 or too large, too many pixels), MEMORY. */
 ASSAY_API assay_status assay_image_create(assay_context *context, int width, int height,
                                           assay_image **image_out);
 ASSAY_API void         assay_image_destroy(assay_image *image);

@@ -36,14 +36,15 @@ ASSAY_API assay_status assay_methods_json(assay_context *context, const char *me
 /* ---- images ---- */
 
 typedef struct {
-    int         width, height; /* pixels                                                        */
-    const char *camera;        /* name or decimal index; NULL: the first; a scene without one
-                                  is framed by a camera of its own                               */
-    uint64_t    seed;          /* of the random numbers                                         */
-    const char *layers;        /* comma-separated groups "color,gbuffer,split,irradiance" or
-                                  "all"; NULL: "all".  See docs/methods/path.md                 */
-    const char *dump;          /* folder to make for the stages, a bundle (docs/bundles.md), or
-                                  NULL; must not be there yet                                   */
+    int width, height;  /* pixels, 1 to ASSAY_IMAGE_MAX_SIDE each, and at most
+                           ASSAY_RENDER_MAX_PIXELS in all                                */
+    const char *camera; /* name or decimal index; NULL: the first; a scene without one
+                           is framed by a camera of its own                               */
+    uint64_t    seed;   /* of the random numbers                                         */
+    const char *layers; /* comma-separated groups "color,gbuffer,split,irradiance" or
+                           "all"; NULL: "all".  See docs/methods/path.md                 */
+    const char *dump;   /* folder to make for the stages, a bundle (docs/bundles.md), or
+                           NULL; must not be there yet                                   */
 } assay_render_options;
 
 /* Defaults: 512 x 512, first camera, seed 0, all layers. */
@@ -62,9 +63,9 @@ typedef struct {
     int      threads;
 } assay_render_stats;
 
-/* Renders the scene at its current time.  stats_out may be NULL.
- * Errors: ARGUMENT, MEMORY, LIMIT, WRITE (the dump), DOMAIN (light that is no finite number),
- * CANCELLED. */
+/* Renders the scene at its current time.  stats_out may be NULL.  Memory for all pixels is asked
+ * for before the work begins.  Errors: ARGUMENT, MEMORY, LIMIT, WRITE (the dump), DOMAIN (light
+ * that is no finite number), CANCELLED. */
 ASSAY_API assay_status assay_render(assay_scene *scene, const char *method,
                                     const assay_params *params, const assay_render_options *options,
                                     assay_image **image_out, assay_render_stats *stats_out);

@@ -65,6 +65,8 @@ ASSAY_API const char      *assay_scene_warning(const assay_scene *scene, uint32_
 /* SHA-256 in hexadecimal of all files that the scene was read from, in the order of their reading,
  * and of the options.  Borrowed. */
 ASSAY_API const char *assay_scene_digest(const assay_scene *scene);
+/* The same of the glTF file, its buffers and images alone, whatever the options.  Borrowed. */
+ASSAY_API const char *assay_scene_files_digest(const assay_scene *scene);
 
 /* The whole report as a JSON text; release it with assay_text_destroy.  Errors: MEMORY. */
 ASSAY_API assay_status assay_scene_report_json(const assay_scene *scene, char **text_out);

@@ -129,7 +129,7 @@ int cli_basis_accuracy(int count, char **argv)
     if (!cli_basis_need(COMMAND, request.has_lobe, "--lobe")) {
         return CLI_EXIT_USAGE;
     }
-    assay_context *context = cli_console_open(&console, COMMAND, false, 1);
+    assay_context *context = cli_console_open(&console, COMMAND, false, 1, 0);
     if (!context) {
         return assay_status_exit_code(ASSAY_ERR_MEMORY);
     }

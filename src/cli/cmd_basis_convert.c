@@ -80,7 +80,7 @@ int cli_basis_convert(int count, char **argv)
         !cli_basis_need(COMMAND, request.order > 0, "--order")) {
         return CLI_EXIT_USAGE;
     }
-    assay_context *context = cli_console_open(&console, COMMAND, false, 1);
+    assay_context *context = cli_console_open(&console, COMMAND, false, 1, 0);
     if (!context) {
         return assay_status_exit_code(ASSAY_ERR_MEMORY);
     }

@@ -50,7 +50,7 @@ int cli_basis_digon(int count, char **argv)
         !cli_basis_need(COMMAND, request.has_beta, "--beta-deg")) {
         return CLI_EXIT_USAGE;
     }
-    assay_context *context = cli_console_open(&console, COMMAND, false, 1);
+    assay_context *context = cli_console_open(&console, COMMAND, false, 1, 0);
     if (!context) {
         return assay_status_exit_code(ASSAY_ERR_MEMORY);
     }

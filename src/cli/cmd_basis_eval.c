@@ -77,7 +77,7 @@ int cli_basis_eval(int count, char **argv)
         cli_complain(COMMAND, "a direction comes as --dir or as angles, not as both");
         return CLI_EXIT_USAGE;
     }
-    assay_context *context = cli_console_open(&console, COMMAND, false, 1);
+    assay_context *context = cli_console_open(&console, COMMAND, false, 1, 0);
     if (!context) {
         return assay_status_exit_code(ASSAY_ERR_MEMORY);
     }

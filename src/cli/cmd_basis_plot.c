@@ -167,7 +167,7 @@ int cli_basis_plot(int count, char **argv)
     if (check) {
         return check;
     }
-    assay_context *context = cli_console_open(&console, COMMAND, false, 1);
+    assay_context *context = cli_console_open(&console, COMMAND, false, 1, 0);
     if (!context) {
         return assay_status_exit_code(ASSAY_ERR_MEMORY);
     }

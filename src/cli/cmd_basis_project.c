@@ -167,7 +167,7 @@ int cli_basis_project(int count, char **argv)
     if (!makes_sense(&request)) {
         return CLI_EXIT_USAGE;
     }
-    assay_context *context = cli_console_open(&console, COMMAND, false, 1);
+    assay_context *context = cli_console_open(&console, COMMAND, false, 1, 0);
     if (!context) {
         return assay_status_exit_code(ASSAY_ERR_MEMORY);
     }

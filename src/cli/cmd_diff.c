@@ -12,15 +12,17 @@ typedef struct {
     const char *paths[2];
     const char *heat_map;
     double      scale;
+    uint64_t    memory_limit;
     int         path_count;
-    bool        json, help;
+    bool        has_scale, json, help;
 } diff_request;
 
-enum { OPT_HEAT, OPT_SCALE, OPT_JSON, OPT_HELP };
+enum { OPT_HEAT, OPT_SCALE, OPT_JSON, OPT_MEMORY, OPT_HELP };
 static const cli_option OPTIONS[] = {
     {"heat-map", 0, "F.png", "draw the relative difference"},
     {"scale", 0, "X", "relative difference at the hot end of the map (default 0.1)"},
     {"json", 0, NULL, "print JSON"},
+    CLI_MEMORY_OPTION,
     {"help", 'h', NULL, "this text"},
     {0}};
 
@@ -30,10 +32,12 @@ static const char *take(void *user, int index, const char *value)
     switch (index) {
     case OPT_HEAT: request->heat_map = value; return NULL;
     case OPT_SCALE:
+        request->has_scale = true;
         return cli_read_real(value, &request->scale) || !(request->scale > 0.0)
                    ? "takes a number > 0"
                    : NULL;
     case OPT_JSON: request->json = true; return NULL;
+    case OPT_MEMORY: return cli_read_bytes(value, &request->memory_limit);
     case OPT_HELP: request->help = true; return NULL;
     default: break;
     }
@@ -167,6 +171,18 @@ static int check_heat_map(const diff_request *r)
     return code ? code : cli_check_file("diff", r->heat_map);
 }
 
+/* What the options say together; NULL, or what is wrong. */
+static const char *check_together(const diff_request *r)
+{
+    if (r->path_count != 2) {
+        return "two images are compared";
+    }
+    if (!*r->paths[0] || !*r->paths[1]) {
+        return "the name of an image is empty";
+    }
+    return r->has_scale && !r->heat_map ? "--scale without --heat-map does nothing" : NULL;
+}
+
 int cli_diff(int count, char **argv)
 {
     diff_request request = {.scale = 0.1};
@@ -180,15 +196,16 @@ int cli_diff(int count, char **argv)
         cli_print_options(OPTIONS);
         return 0;
     }
-    if (request.path_count != 2) {
-        cli_complain("diff", "two images are compared (assay diff --help lists the options)");
+    const char *problem = check_together(&request);
+    if (problem) {
+        cli_complain("diff", "%s (assay diff --help lists the options)", problem);
         return CLI_EXIT_USAGE;
     }
     const int check = request.heat_map ? check_heat_map(&request) : 0;
     if (check != 0) {
         return check;
     }
-    assay_context *context = cli_console_open(&console, "diff", false, 0);
+    assay_context *context = cli_console_open(&console, "diff", false, 0, request.memory_limit);
     if (!context) {
         return assay_status_exit_code(ASSAY_ERR_MEMORY);
     }

@@ -73,7 +73,7 @@ int cli_methods(int count, char **argv)
         cli_print_options(OPTIONS);
         return 0;
     }
-    assay_context *context = cli_console_open(&console, "methods", false, 1);
+    assay_context *context = cli_console_open(&console, "methods", false, 1, 0);
     if (!context) {
         return assay_status_exit_code(ASSAY_ERR_MEMORY);
     }

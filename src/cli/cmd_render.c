@@ -203,7 +203,7 @@ static assay_status render_all(render_job *job)
     const double              start  = now();
     assay_status              status = make_params(job);
     if (status == ASSAY_OK) {
-        status = assay_scene_load(job->context, r->scene, &r->scene_options, &job->scene);
+        status = assay_scene_load(job->context, r->scene, &r->scene_options.options, &job->scene);
     }
     job->seconds_load = now() - start;
     for (long f = r->first_frame; f <= r->last_frame && status == ASSAY_OK; f++) {
@@ -255,8 +255,8 @@ int cli_render(int count, char **argv)
     if (code != 0) {
         return code;
     }
-    assay_context *context =
-        cli_console_open(&console, "render", request.quiet, (int)request.threads);
+    assay_context *context = cli_console_open(&console, "render", request.quiet,
+                                              (int)request.threads, request.memory_limit);
     if (!context) {
         return assay_status_exit_code(ASSAY_ERR_MEMORY);
     }

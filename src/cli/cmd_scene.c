@@ -6,14 +6,18 @@
 #include "scene_options.h"
 
 typedef struct {
-    const char         *path;
-    assay_scene_options options;
-    bool                json, help;
+    const char       *path;
+    cli_scene_request options;
+    uint64_t          memory_limit;
+    bool              json, help;
 } scene_request;
 
-enum { OPT_JSON, OPT_HELP, OPT_SCENE };
-static const cli_option OPTIONS[] = {
-    {"json", 0, NULL, "print JSON"}, {"help", 'h', NULL, "this text"}, CLI_SCENE_OPTIONS, {0}};
+enum { OPT_JSON, OPT_MEMORY, OPT_HELP };
+static const cli_option OPTIONS[] = {{"json", 0, NULL, "print JSON"},
+                                     CLI_MEMORY_OPTION,
+                                     {"help", 'h', NULL, "this text"},
+                                     CLI_SCENE_OPTIONS,
+                                     {0}};
 
 static const char *take(void *user, int index, const char *value)
 {
@@ -21,6 +25,7 @@ static const char *take(void *user, int index, const char *value)
     const char    *problem = NULL;
     switch (index) {
     case OPT_JSON: request->json = true; return NULL;
+    case OPT_MEMORY: return cli_read_bytes(value, &request->memory_limit);
     case OPT_HELP: request->help = true; return NULL;
     default: break;
     }
@@ -59,9 +64,10 @@ static void print_scene(const char *path, const assay_scene *scene)
 
 static assay_status report(assay_context *context, const scene_request *request)
 {
-    assay_scene *scene  = NULL;
-    char        *text   = NULL;
-    assay_status status = assay_scene_load(context, request->path, &request->options, &scene);
+    assay_scene *scene = NULL;
+    char        *text  = NULL;
+    assay_status status =
+        assay_scene_load(context, request->path, &request->options.options, &scene);
     if (status == ASSAY_OK && request->json) {
         status = assay_scene_report_json(scene, &text);
         if (status == ASSAY_OK) {
@@ -77,7 +83,7 @@ static assay_status report(assay_context *context, const scene_request *request)
 
 int cli_scene(int count, char **argv)
 {
-    scene_request request = {.options = assay_scene_options_default()};
+    scene_request request = {.options = cli_scene_request_default()};
     cli_console   console;
     if (!cli_parse("scene", count, argv, OPTIONS, take, NULL, &request)) {
         return CLI_EXIT_USAGE;
@@ -87,12 +93,14 @@ int cli_scene(int count, char **argv)
         cli_print_options(OPTIONS);
         return 0;
     }
-    if (!request.path) {
-        cli_complain("scene", "no scene given (assay scene --help lists the options)");
+    const char *problem =
+        request.path && *request.path ? cli_scene_check(&request.options) : "no scene given";
+    if (problem) {
+        cli_complain("scene", "%s (assay scene --help lists the options)", problem);
         return CLI_EXIT_USAGE;
     }
     /* Warnings are part of the report; they are not said twice. */
-    assay_context *context = cli_console_open(&console, "scene", true, 0);
+    assay_context *context = cli_console_open(&console, "scene", true, 0, request.memory_limit);
     if (!context) {
         return assay_status_exit_code(ASSAY_ERR_MEMORY);
     }

@@ -114,14 +114,18 @@ bool cli_complain(const char *command, const char *format, ...)
     return false;
 }
 
-assay_context *cli_console_open(cli_console *console, const char *command, bool quiet, int threads)
+assay_context *cli_console_open(cli_console *console, const char *command, bool quiet, int threads,
+                                uint64_t memory_limit)
 {
     *console = (cli_console){
         .command = command, .quiet = quiet, .terminal = isatty(STDERR_FILENO), .last_percent = -1};
-    const assay_context_options options = {
-        .threads = threads, .log = print_log, .progress = show_progress, .user = console};
-    assay_context     *context = NULL;
-    const assay_status status  = assay_context_create(&options, &context);
+    const assay_context_options options = {.threads      = threads,
+                                           .log          = print_log,
+                                           .progress     = show_progress,
+                                           .user         = console,
+                                           .memory_limit = memory_limit};
+    assay_context              *context = NULL;
+    const assay_status          status  = assay_context_create(&options, &context);
     if (status != ASSAY_OK) {
         cli_complain(command, "%s", assay_status_text(status));
         return NULL;

@@ -17,9 +17,11 @@ typedef struct {
     char        last_phase[16];
 } cli_console;
 
-/* A context with this many threads (0: all processors) that warns and shows progress on stderr, and
- * stops at Ctrl-C.  The console must outlive it.  NULL after a message. */
-assay_context *cli_console_open(cli_console *console, const char *command, bool quiet, int threads);
+/* A context with this many threads (0: all processors) and this limit of memory (0: what the
+ * machine has, as in assay_context_options) that warns and shows progress on stderr, and stops at
+ * Ctrl-C.  The console must outlive it.  NULL after a message. */
+assay_context *cli_console_open(cli_console *console, const char *command, bool quiet, int threads,
+                                uint64_t memory_limit);
 
 /* Whether Ctrl-C was pressed: asked between steps that show no progress. */
 bool cli_console_stopped(void);

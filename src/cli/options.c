@@ -19,6 +19,9 @@ static int find_name(const cli_option *table, const char *name, size_t length)
     return -1;
 }
 
+_Static_assert(ASSAY_IMAGE_MAX_SIDE == 65536 && ASSAY_RENDER_MAX_PIXELS == 67108864,
+               "the words of cli_read_size say so");
+
 static int find_letter(const cli_option *table, char letter)
 {
     for (int i = 0; table[i].name; i++) {
@@ -168,6 +171,26 @@ const char *cli_read_count(const char *text, long minimum, long maximum, long *v
     return NULL;
 }
 
+const char *cli_read_bytes(const char *text, uint64_t *value)
+{
+    static const char UNITS[] = "KMGT";
+    if (strcmp(text, "none") == 0) {
+        *value = UINT64_MAX;
+        return NULL;
+    }
+    char *end                       = NULL;
+    errno                           = 0;
+    const unsigned long long number = strtoull(text, &end, 10);
+    const char              *unit   = *end ? strchr(UNITS, *end) : NULL;
+    const int                shift  = unit ? 10 * (int)(unit - UNITS + 1) : 0;
+    if (*text < '0' || *text > '9' || errno || number == 0 || (*end && !unit) || (unit && end[1]) ||
+        number > UINT64_MAX >> shift) {
+        return "takes bytes, with K, M, G or T behind them, as in 4G, or none";
+    }
+    *value = (uint64_t)number << shift;
+    return NULL;
+}
+
 const char *cli_read_seed(const char *text, unsigned long long *value)
 {
     char *end                       = NULL;
@@ -201,8 +224,8 @@ const char *cli_read_size(const char *text, int *width, int *height)
     char words[2][64];
     long w, h;
     if (!split(text, 'x', 2, words) || cli_read_count(words[0], 1, ASSAY_IMAGE_MAX_SIDE, &w) ||
-        cli_read_count(words[1], 1, ASSAY_IMAGE_MAX_SIDE, &h)) {
-        return "takes WxH, each from 1 to 65536, as in 640x480";
+        cli_read_count(words[1], 1, ASSAY_IMAGE_MAX_SIDE, &h) || w * h > ASSAY_RENDER_MAX_PIXELS) {
+        return "takes WxH, each from 1 to 65536 and at most 67108864 pixels in all, as in 640x480";
     }
     *width  = (int)w;
     *height = (int)h;

@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 typedef struct {
     const char *name;     /* "size": --size VALUE or --size=VALUE; NULL ends a table */
@@ -26,13 +27,21 @@ bool cli_parse(const char *command, int count, char **argv, const cli_option *ta
 
 void cli_print_options(const cli_option *table);
 
+/* To be put into the table of a command that needs much memory. */
+#define CLI_MEMORY_OPTION                                                                          \
+    {                                                                                              \
+        "memory-limit", 0, "SIZE", "refuse what needs more: 4G, none (default: what is free)"      \
+    }
+
 /* ---- values; each answers NULL or what is wrong ---- */
 
-const char *cli_read_size(const char *text, int *width, int *height);   /* "640x480"    */
+const char *cli_read_size(const char *text, int *width, int *height);   /* "640x480", of a render */
 const char *cli_read_real(const char *text, double *value);             /* finite       */
 const char *cli_read_triple(const char *text, double value[3]);         /* "1,0.5,0"    */
 const char *cli_read_range(const char *text, long *first, long *last);  /* "0:23", "7"  */
 const char *cli_read_seed(const char *text, unsigned long long *value); /* 0 ... 2^64-1 */
+/* "4G", "512M", "none": bytes, with K, M, G, T as powers of 1024; none is UINT64_MAX. */
+const char *cli_read_bytes(const char *text, uint64_t *value);
 /* A whole number in the range; the caller knows better words for it. */
 const char *cli_read_count(const char *text, long minimum, long maximum, long *value);
 

@@ -19,6 +19,13 @@ static int refuse(const char *command, const char *path, const char *reason)
     return assay_status_exit_code(ASSAY_ERR_WRITE);
 }
 
+/* A mistake of the command line, whatever the machine can write. */
+static int refuse_empty(const char *command)
+{
+    cli_complain(command, "the name of an output is empty");
+    return CLI_EXIT_USAGE;
+}
+
 static int check_parent(const char *command, const char *path)
 {
     struct stat info;
@@ -46,7 +53,7 @@ int cli_check_file(const char *command, const char *path)
     struct stat  info;
     const size_t length = strlen(path);
     if (length == 0) {
-        return refuse(command, "''", "is no name for an output");
+        return refuse_empty(command);
     }
     if ((stat(path, &info) == 0 && S_ISDIR(info.st_mode)) || path[length - 1] == '/') {
         return refuse(command, path, "is a folder; give the name of a file");
@@ -61,7 +68,7 @@ int cli_check_new_folder(const char *command, const char *path)
 {
     struct stat info;
     if (!*path) {
-        return refuse(command, "''", "is no name for an output");
+        return refuse_empty(command);
     }
     if (lstat(path, &info) == 0) {
         return refuse(command, path, "is there already; a bundle replaces nothing");

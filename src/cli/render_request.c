@@ -30,6 +30,7 @@ enum {
     OPT_STATS,
     OPT_DUMP,
     OPT_THREADS,
+    OPT_MEMORY,
     OPT_QUIET,
     OPT_HELP
 };
@@ -39,20 +40,22 @@ static const cli_option OPTIONS[] = {
     [OPT_PARAM]    = {"param", 'p', "K=V", "set a parameter of the method; --K V says the same"},
     [OPT_OUTPUT]   = {"output", 'o', "F", "image (.exr), or with --points table (.npy)"},
     [OPT_PNG]      = {"png", 0, "F.png", "also a preview, 8 bits, sRGB"},
-    [OPT_EXPOSURE] = {"exposure", 0, "STOPS", "of the preview (default 0)"},
+    [OPT_EXPOSURE] = {"exposure", 0, "STOPS", "of --png, value times 2^STOPS (default 0)"},
     [OPT_CAMERA]   = {"camera", 0, "C", "name or number (default: the first)"},
-    [OPT_SIZE]     = {"size", 0, "WxH", "pixels (default 512x512)"},
-    [OPT_LAYERS]   = {"layers", 0, "L", "color,gbuffer,split,irradiance or all (default)"},
-    [OPT_POINTS]   = {"points", 0, "F.npy", "irradiance at points: rows of x y z nx ny nz"},
-    [OPT_SEED]     = {"seed", 0, "S", "of the random numbers (default 0)"},
-    [OPT_TIME]     = {"time", 0, "T", "time of animations, s (default 0)"},
-    [OPT_FRAMES]   = {"frames", 0, "A:B", "frames A to B; a run of # in a name is the number"},
-    [OPT_FPS]      = {"fps", 0, "F", "frames a second (default 24)"},
-    [OPT_STATS]    = {"stats", 0, "F.json", "write rays, samples, seconds, memory"},
-    [OPT_DUMP]     = {"dump", 0, "DIR", "write every stage as arrays into a new folder"},
-    [OPT_THREADS]  = {"threads", 0, "N", "0: one a processor (default); never changes a bit"},
-    [OPT_QUIET]    = {"quiet", 'q', NULL, "no progress, no warnings"},
-    [OPT_HELP]     = {"help", 'h', NULL, "this text"},
+    [OPT_SIZE]   = {"size", 0, "WxH", "pixels (default 512x512): to 65536 a side, 67108864 in all"},
+    [OPT_LAYERS] = {"layers", 0, "L", "color,gbuffer,split,irradiance or all (default)"},
+    [OPT_POINTS] = {"points", 0, "F.npy", "irradiance at points, no image: rows x y z nx ny nz"},
+    [OPT_SEED]   = {"seed", 0, "S", "of the random numbers (default 0)"},
+    [OPT_TIME]   = {"time", 0, "T", "time of animations, s (default 0)"},
+    [OPT_FRAMES] = {"frames", 0, "A:B",
+                    "frames A to B; # in names is the number, else .0000 is added"},
+    [OPT_FPS]    = {"fps", 0, "F", "of --frames, a second (default 24)"},
+    [OPT_STATS]  = {"stats", 0, "F.json", "write rays, samples, seconds, memory"},
+    [OPT_DUMP]   = {"dump", 0, "DIR", "write every stage as arrays into a new folder"},
+    [OPT_THREADS] = {"threads", 0, "N", "0: one a processor (default); never changes a bit"},
+    [OPT_MEMORY]  = CLI_MEMORY_OPTION,
+    [OPT_QUIET]   = {"quiet", 'q', NULL, "no progress, no warnings"},
+    [OPT_HELP]    = {"help", 'h', NULL, "this text"},
     CLI_SCENE_OPTIONS,
     {0}};
 
@@ -116,24 +119,29 @@ static const char *take_number(cli_render_request *request, int index, const cha
     unsigned long long seed    = 0;
     switch (index) {
     case OPT_EXPOSURE:
-        problem = cli_read_real(value, &request->exposure);
+        request->has_exposure = true;
+        problem               = cli_read_real(value, &request->exposure);
         return problem || fabs(request->exposure) > 1000.0 ? "takes stops from -1000 to 1000"
                                                            : NULL;
-    case OPT_SIZE: return cli_read_size(value, &request->render.width, &request->render.height);
+    case OPT_SIZE:
+        request->has_size = true;
+        return cli_read_size(value, &request->render.width, &request->render.height);
     case OPT_SEED:
         problem              = cli_read_seed(value, &seed);
         request->render.seed = seed;
         return problem;
-    case OPT_TIME: return cli_read_real(value, &request->time);
+    case OPT_TIME: request->has_time = true; return cli_read_real(value, &request->time);
     case OPT_FRAMES:
         request->has_frames = true;
         return cli_read_range(value, &request->first_frame, &request->last_frame);
     case OPT_FPS:
-        problem = cli_read_real(value, &request->fps);
+        request->has_fps = true;
+        problem          = cli_read_real(value, &request->fps);
         return problem || !(request->fps > 0.0) ? "takes a number > 0" : NULL;
     case OPT_THREADS:
         problem = cli_read_count(value, 0, 1024, &request->threads);
         return problem ? "takes a whole number from 0 to 1024" : NULL;
+    case OPT_MEMORY: return cli_read_bytes(value, &request->memory_limit);
     default: break;
     }
     cli_scene_option(&request->scene_options, OPTIONS[index].name, value, &problem);
@@ -150,7 +158,7 @@ static const char *take(void *user, int index, const char *value)
     case OPT_PNG: request->png = value; return NULL;
     case OPT_CAMERA: request->render.camera = value; return NULL;
     case OPT_LAYERS: request->render.layers = value; return NULL;
-    case OPT_POINTS: request->points = value; return NULL;
+    case OPT_POINTS: request->points = value; return *value ? NULL : "takes the name of a file";
     case OPT_STATS: request->stats = value; return NULL;
     case OPT_DUMP: request->dump = value; return NULL;
     case OPT_QUIET: request->quiet = true; return NULL;
@@ -182,11 +190,34 @@ void cli_render_request_help(const cli_render_request *request)
     }
 }
 
+/* An option that would change nothing is a misunderstanding; NULL where there is none. */
+static const char *check_use(const cli_render_request *r)
+{
+    const struct {
+        bool        idle;
+        const char *problem;
+    } uses[] = {
+        {r->points && (r->png || r->dump), "--points makes a table alone: no --png, no --dump"},
+        {r->points && r->render.camera, "--points looks through no camera: no --camera"},
+        {r->points && r->has_size, "--points makes no image: no --size"},
+        {r->points && r->render.layers, "--points makes no image: no --layers"},
+        {r->has_frames && r->has_time, "--frames and --time: both say when"},
+        {r->has_fps && !r->has_frames, "--fps without --frames does nothing"},
+        {r->has_exposure && !r->png, "--exposure without --png does nothing"},
+    };
+    for (size_t i = 0; i < sizeof uses / sizeof uses[0]; i++) {
+        if (uses[i].idle) {
+            return uses[i].problem;
+        }
+    }
+    return cli_scene_check(&r->scene_options);
+}
+
 /* What the options say together; NULL, or what is wrong. */
 static const char *check_together(const cli_render_request *r)
 {
     const char *layers = r->render.layers;
-    if (!r->scene) {
+    if (!r->scene || !*r->scene) {
         return "no scene given";
     }
     if (!r->output) {
@@ -194,9 +225,6 @@ static const char *check_together(const cli_render_request *r)
     }
     if (strcmp(r->output, "-") == 0 || (r->png && strcmp(r->png, "-") == 0)) {
         return "images do not go to standard output; give the name of a file";
-    }
-    if (r->points && (r->png || r->dump)) {
-        return "--points makes a table alone: no --png, no --dump";
     }
     if (r->png && layers && !strstr(layers, "color") && !strstr(layers, "all")) {
         return "--png shows the colour: --layers must have color in it";
@@ -210,13 +238,13 @@ static const char *check_together(const cli_render_request *r)
             }
         }
     }
-    return NULL;
+    return check_use(r);
 }
 
 bool cli_render_request_parse(int count, char **argv, cli_render_request *request)
 {
     *request = (cli_render_request){.method        = "path",
-                                    .scene_options = assay_scene_options_default(),
+                                    .scene_options = cli_scene_request_default(),
                                     .render        = assay_render_options_default(),
                                     .fps           = 24.0};
     if (!cli_parse("render", count, argv, OPTIONS, take, take_unknown, request)) {

@@ -3,25 +3,27 @@
 #define ASSAY_CLI_RENDER_REQUEST_H
 
 #include "assay/assay.h"
+#include "scene_options.h"
 
 enum { CLI_MAX_PARAMS = 64 };
 
 typedef struct {
     const char          *scene, *method, *output, *png, *points, *stats, *dump;
-    assay_scene_options  scene_options;
+    cli_scene_request    scene_options;
     assay_render_options render;
     struct {
         const char *name, *value;
     } params[CLI_MAX_PARAMS]; /* borrowed from argv or from names */
-    char   names[CLI_MAX_PARAMS][64];
-    int    param_count;
-    double exposure; /* stops, of the PNG */
-    double time;     /* s; where no frames are asked for */
-    bool   has_frames;
-    long   first_frame, last_frame;
-    double fps;
-    long   threads;
-    bool   quiet, help;
+    char     names[CLI_MAX_PARAMS][64];
+    int      param_count;
+    double   exposure; /* stops, of the PNG */
+    double   time;     /* s; where no frames are asked for */
+    long     first_frame, last_frame;
+    double   fps;
+    long     threads;
+    uint64_t memory_limit; /* bytes; 0: what the machine has */
+    bool     has_size, has_exposure, has_time, has_frames, has_fps;
+    bool     quiet, help;
 } cli_render_request;
 
 /* Reads the command line.  False after a message. */

@@ -47,20 +47,30 @@ static const char *read_degrees(const char *text, double *radians)
     return problem;
 }
 
-bool cli_scene_option(assay_scene_options *options, const char *name, const char *value,
+cli_scene_request cli_scene_request_default(void)
+{
+    return (cli_scene_request){.options = assay_scene_options_default()};
+}
+
+bool cli_scene_option(cli_scene_request *request, const char *name, const char *value,
                       const char **problem)
 {
-    *problem = NULL;
+    assay_scene_options *options = &request->options;
+    *problem                     = NULL;
     if (strcmp(name, "scene-index") == 0) {
         *problem = read_index(value, &options->scene_index);
     } else if (strcmp(name, "env") == 0) {
         options->environment_path = value;
+        *problem                  = *value ? NULL : "takes the name of a file";
     } else if (strcmp(name, "env-scale") == 0) {
-        *problem = read_not_negative(value, &options->environment_scale);
+        request->has_scale = true;
+        *problem           = read_not_negative(value, &options->environment_scale);
     } else if (strcmp(name, "env-rotation-deg") == 0) {
-        *problem = read_degrees(value, &options->environment_rotation);
+        request->has_rotation = true;
+        *problem              = read_degrees(value, &options->environment_rotation);
     } else if (strcmp(name, "background") == 0) {
-        *problem = read_background(value, &options->background);
+        request->has_background = true;
+        *problem                = read_background(value, &options->background);
     } else if (strcmp(name, "force-diffuse") == 0) {
         options->force_diffuse = true;
     } else if (strcmp(name, "solid-transmission") == 0) {
@@ -69,4 +79,19 @@ bool cli_scene_option(assay_scene_options *options, const char *name, const char
         return false;
     }
     return true;
+}
+
+const char *cli_scene_check(const cli_scene_request *request)
+{
+    const bool map = request->options.environment_path != NULL;
+    if (map && request->has_background) {
+        return "--env and --background: the one takes the place of the other";
+    }
+    if (!map && request->has_scale) {
+        return "--env-scale without --env does nothing";
+    }
+    if (!map && request->has_rotation) {
+        return "--env-rotation-deg without --env does nothing";
+    }
+    return NULL;
 }

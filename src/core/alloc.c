@@ -1,4 +1,5 @@
-/* alloc.c - blocks are aligned to 64 bytes by keeping the allocator's own pointer just before. */
+/* alloc.c - blocks are aligned to 64 bytes by keeping the allocator's own pointer just before, and
+ * beside it the bytes that the block is counted with. */
 #include "core/alloc.h"
 
 #include <stdint.h>
@@ -8,21 +9,33 @@
 
 enum { ALIGNMENT = 64 };
 
+/* Lies before every block. */
+typedef struct {
+    void  *raw;
+    size_t bytes;
+} block_head;
+
 void *assay_allocate(assay_context *context, size_t count, size_t size)
 {
-    const size_t extra = ALIGNMENT + sizeof(void *);
+    const size_t extra = ALIGNMENT + sizeof(block_head);
     if (size && count > (SIZE_MAX - extra) / size) {
+        atomic_store(&context->memory_refused, SIZE_MAX);
         return NULL;
     }
     const size_t          bytes     = count * size;
     const assay_allocator allocator = context->options.allocator;
-    char                 *raw       = allocator.allocate(allocator.user, bytes + extra);
-    if (!raw) {
+    if (!assay_memory_charge(context, bytes + extra)) {
         return NULL;
     }
-    const uintptr_t start   = (uintptr_t)raw + sizeof(void *);
-    char           *aligned = raw + (sizeof(void *) + (ALIGNMENT - start % ALIGNMENT) % ALIGNMENT);
-    memcpy(aligned - sizeof(void *), &raw, sizeof raw);
+    const block_head head = {allocator.allocate(allocator.user, bytes + extra), bytes + extra};
+    if (!head.raw) {
+        assay_memory_discharge(context, head.bytes);
+        atomic_store(&context->memory_refused, head.bytes);
+        return NULL;
+    }
+    const uintptr_t start   = (uintptr_t)head.raw + sizeof head;
+    char           *aligned = (char *)head.raw + sizeof head + (-start & (ALIGNMENT - 1));
+    memcpy(aligned - sizeof head, &head, sizeof head);
     memset(aligned, 0, bytes);
     return aligned;
 }
@@ -32,9 +45,10 @@ void assay_release(assay_context *context, void *memory)
     if (!memory) {
         return;
     }
-    char *raw = NULL;
-    memcpy(&raw, (char *)memory - sizeof(void *), sizeof raw);
-    context->options.allocator.release(context->options.allocator.user, raw);
+    block_head head;
+    memcpy(&head, (char *)memory - sizeof head, sizeof head);
+    assay_memory_discharge(context, head.bytes);
+    context->options.allocator.release(context->options.allocator.user, head.raw);
 }
 
 assay_status assay_grow(assay_context *context, void **array, size_t *capacity, size_t needed,

@@ -7,6 +7,7 @@
 #include <sys/mman.h>
 
 #include "core/context_data.h"
+#include "core/machine_memory.h"
 
 #ifndef ASSAY_VERSION
 #error "the Makefile defines ASSAY_VERSION"
@@ -58,8 +59,13 @@ assay_status assay_context_create(const assay_context_options *options, assay_co
         return ASSAY_ERR_MEMORY;
     }
     memset(context, 0, sizeof *context);
+    if (o.memory_limit == 0) {
+        o.memory_limit = assay_machine_memory_budget(assay_machine_memory(""));
+    }
     context->options = o;
-    const char *isa  = getenv("ASSAY_ISA");
+    atomic_init(&context->memory_used, 0);
+    atomic_init(&context->memory_refused, 0);
+    const char *isa = getenv("ASSAY_ISA");
     if (isa) {
         snprintf(context->isa, sizeof context->isa, "%s", isa);
     }
@@ -79,6 +85,16 @@ const char *assay_context_error(const assay_context *context) { return context->
 
 int assay_context_threads(const assay_context *context) { return context->options.threads; }
 
+uint64_t assay_context_memory_limit(const assay_context *context)
+{
+    return context->options.memory_limit;
+}
+
+uint64_t assay_context_memory_used(const assay_context *context)
+{
+    return atomic_load(&context->memory_used);
+}
+
 const char *assay_context_isa(const assay_context *context)
 {
     return context->isa[0] ? context->isa : NULL;
@@ -96,11 +112,6 @@ assay_status assay_fail(assay_context *context, assay_status status, const char 
     va_end(arguments);
     memcpy(context->error, message, sizeof message);
     return status;
-}
-
-assay_status assay_fail_memory(assay_context *context, const char *what)
-{
-    return assay_fail(context, ASSAY_ERR_MEMORY, "out of memory for %s", what);
 }
 
 void assay_inform(assay_context *context, assay_log_level level, const char *format, ...)

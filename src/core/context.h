@@ -11,7 +11,7 @@
 assay_status assay_fail(assay_context *context, assay_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* "out of memory" with the standard words. */
+/* "out of memory" with the standard words: how much was refused, and how much there is. */
 assay_status assay_fail_memory(assay_context *context, const char *what);
 
 void assay_inform(assay_context *context, assay_log_level level, const char *format, ...)

@@ -35,6 +35,7 @@ void assay_array_destroy(assay_array *array)
 {
     if (array) {
         assay_release(array->context, array->values);
+        assay_release(array->context, array->name);
         assay_release(array->context, array);
     }
 }
@@ -46,3 +47,8 @@ size_t assay_array_columns(const assay_array *array) { return array->columns; }
 double *assay_array_data(assay_array *array) { return array->values; }
 
 const double *assay_array_values(const assay_array *array) { return array->values; }
+
+const char *assay_array_name(const assay_array *array, const char *otherwise)
+{
+    return array->name ? array->name : otherwise;
+}

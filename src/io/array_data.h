@@ -1,4 +1,4 @@
-/* array_data.h - the inside of a table; private to io. */
+/* array_data.h - the inside of a table; private to io but for its name. */
 #ifndef ASSAY_IO_ARRAY_DATA_H
 #define ASSAY_IO_ARRAY_DATA_H
 
@@ -9,8 +9,12 @@
 struct assay_array {
     assay_context *context;
     size_t         rows, columns;
-    double        *values; /* rows * columns, row by row */
+    double        *values; /* rows * columns, row by row                      */
+    char          *name;   /* the file it was read from, or NULL: for messages */
 };
+
+/* What to call a table in a message: its file, or what it is. */
+const char *assay_array_name(const assay_array *array, const char *otherwise);
 
 #define ASSAY_ARRAY_MAX_VALUES ((uint64_t)1 << 31)
 

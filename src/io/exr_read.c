@@ -27,8 +27,11 @@ typedef struct {
     const exr_attr_chlist_t *channels;
     exr_attr_box2i_t         data, display; /* inclusive */
     assay_image             *image;
-    assay_channel           *targets; /* one a channel of the file, in its order */
-    exr_compression_t        compression;
+    const char *const       *wanted;  /* names, up to a NULL; or NULL: all       */
+    assay_channel           *targets; /* one a channel of the file, in its order; without data where
+                                         it is not wanted */
+    assay_status      refused;        /* what there is no memory for, said already */
+    exr_compression_t compression;
     exr_result_t (*decompress)(exr_decode_pipeline_t *); /* the library's choice */
     char message[200];
 } exr_job;
@@ -73,6 +76,9 @@ static int64_t file_size(exr_const_context_t exr, void *user)
 
 static assay_status fail_exr(const exr_job *job, exr_result_t result, const char *where)
 {
+    if (job->refused != ASSAY_OK) {
+        return job->refused;
+    }
     if (result == EXR_ERR_OUT_OF_MEMORY) {
         return assay_fail_memory(job->context, job->name);
     }
@@ -220,6 +226,26 @@ static assay_status as_format_error(const exr_job *job, assay_status status)
                       assay_context_error(job->context));
 }
 
+static bool is_wanted(const exr_job *job, const char *name)
+{
+    const char *const *wanted = job->wanted;
+    while (wanted && *wanted && strcmp(*wanted, name) != 0) {
+        wanted++;
+    }
+    return !wanted || *wanted;
+}
+
+/* For all channels at once, so that no memory is filled in vain. */
+static assay_status ask_for_memory(const exr_job *job)
+{
+    uint64_t count = 0;
+    for (int i = 0; i < job->channels->num_channels; i++) {
+        count += is_wanted(job, job->channels->entries[i].name.str);
+    }
+    const uint64_t pixels = (uint64_t)job->image->width * (uint64_t)job->image->height;
+    return assay_memory_ask(job->context, count * pixels * sizeof(float), job->name);
+}
+
 static assay_status make_channels(exr_job *job)
 {
     const int count = job->channels->num_channels;
@@ -227,9 +253,16 @@ static assay_status make_channels(exr_job *job)
     if (!job->targets) {
         return assay_fail_memory(job->context, job->name);
     }
+    const assay_status room = ask_for_memory(job);
+    if (room != ASSAY_OK) {
+        return room;
+    }
     for (int i = 0; i < count; i++) {
         const exr_attr_chlist_entry_t *channel = &job->channels->entries[i];
-        const assay_channel_type       type =
+        if (!is_wanted(job, channel->name.str)) {
+            continue;
+        }
+        const assay_channel_type type =
             channel->pixel_type == EXR_PIXEL_UINT ? ASSAY_CHANNEL_UINT : ASSAY_CHANNEL_FLOAT;
         const assay_status status =
             assay_image_add_channel(job->image, channel->name.str, type, &job->targets[i]);
@@ -275,7 +308,7 @@ static void unpack_row(const chunk_place *place, int channel, int32_t row, int32
     const int64_t       y      = (int64_t)place->y + row + job->data.min.y - job->display.min.y;
     const int64_t       x      = (int64_t)place->x + job->data.min.x - job->display.min.x;
     const int           image_width = job->image->width;
-    if (y < 0 || y >= job->image->height) {
+    if (!target.data.u32 || y < 0 || y >= job->image->height) {
         return;
     }
     const int64_t first = x < 0 ? -x : 0;
@@ -291,16 +324,11 @@ static void unpack_row(const chunk_place *place, int channel, int32_t row, int32
 /* A decompressed chunk holds, row by row, each channel's samples of that row, lowest byte first. */
 static exr_result_t unpack_chunk(exr_decode_pipeline_t *decode)
 {
-    const chunk_place *place    = decode->decoding_user_data;
-    const exr_job     *job      = place->job;
-    const uint8_t     *packed   = decode->unpacked_buffer;
-    const int32_t      width    = decode->chunk.width;
-    uint64_t           expected = 0;
-    for (int c = 0; c < job->channels->num_channels; c++) {
-        expected += job->channels->entries[c].pixel_type == EXR_PIXEL_HALF ? 2 : 4;
-    }
-    expected *= (uint64_t)width * (uint64_t)decode->chunk.height;
-    if (!packed || decode->chunk.packed_size == 0 || decode->chunk.unpacked_size != expected) {
+    const chunk_place *place  = decode->decoding_user_data;
+    const exr_job     *job    = place->job;
+    const uint8_t     *packed = decode->unpacked_buffer;
+    const int32_t      width  = decode->chunk.width;
+    if (!packed || decode->chunk.packed_size == 0) {
         return EXR_ERR_CORRUPT_CHUNK;
     }
     for (int32_t row = 0; row < decode->chunk.height; row++) {
@@ -313,11 +341,50 @@ static exr_result_t unpack_chunk(exr_decode_pipeline_t *decode)
     return EXR_ERR_SUCCESS;
 }
 
+/* Bytes of a pixel in a decompressed chunk. */
+static uint64_t packed_pixel(const exr_job *job)
+{
+    uint64_t bytes = 0;
+    for (int c = 0; c < job->channels->num_channels; c++) {
+        bytes += job->channels->entries[c].pixel_type == EXR_PIXEL_HALF ? 2 : 4;
+    }
+    return bytes;
+}
+
+/* The library makes room for whatever sizes a chunk claims.  So they are held against the file
+ * first, which is then to blame, and against the memory there is. */
+static exr_result_t check_chunk(exr_job *job, const exr_chunk_info_t *chunk)
+{
+    const uint64_t expected = (uint64_t)chunk->width * (uint64_t)chunk->height * packed_pixel(job);
+    if (chunk->packed_size > job->count || chunk->unpacked_size != expected) {
+        return EXR_ERR_CORRUPT_CHUNK;
+    }
+    job->refused = assay_memory_ask(job->context, chunk->packed_size + 2 * expected, job->name);
+    return job->refused == ASSAY_OK ? EXR_ERR_SUCCESS : EXR_ERR_OUT_OF_MEMORY;
+}
+
+/* B44 that ends too early is "out of memory" to the library.  It is so only where the scratch
+ * buffer, which comes first, could not be had. */
+static exr_result_t decompress(exr_decode_pipeline_t *decode)
+{
+    const chunk_place      *place       = decode->decoding_user_data;
+    const exr_compression_t compression = place->job->compression;
+    const bool b44 = compression == EXR_COMPRESSION_B44 || compression == EXR_COMPRESSION_B44A;
+    const exr_result_t result = place->job->decompress(decode);
+    return result == EXR_ERR_OUT_OF_MEMORY && b44 && decode->scratch_buffer_1
+               ? EXR_ERR_CORRUPT_CHUNK
+               : result;
+}
+
 static exr_result_t read_chunk(exr_job *job, exr_decode_pipeline_t *decode, bool first,
                                const exr_chunk_info_t *chunk, chunk_place *place)
 {
-    exr_result_t result = first ? exr_decoding_initialize(job->exr, 0, chunk, decode)
-                                : exr_decoding_update(job->exr, 0, chunk, decode);
+    exr_result_t result = check_chunk(job, chunk);
+    if (result != EXR_ERR_SUCCESS) {
+        return result;
+    }
+    result = first ? exr_decoding_initialize(job->exr, 0, chunk, decode)
+                   : exr_decoding_update(job->exr, 0, chunk, decode);
     if (result == EXR_ERR_SUCCESS && first) {
         result          = exr_decoding_choose_default_routines(job->exr, 0, decode);
         job->decompress = decode->decompress_fn;
@@ -328,7 +395,7 @@ static exr_result_t read_chunk(exr_job *job, exr_decode_pipeline_t *decode, bool
     /* A chunk that compression would not have made smaller is stored as it is; 3.1 forgets that for
      * B44 and would scramble it. */
     const bool raw                = chunk->packed_size == chunk->unpacked_size;
-    decode->decompress_fn         = raw ? NULL : job->decompress;
+    decode->decompress_fn         = raw || !job->decompress ? NULL : decompress;
     decode->decoding_user_data    = place;
     decode->unpack_and_convert_fn = unpack_chunk;
     return exr_decoding_run(job->exr, 0, decode);
@@ -402,9 +469,11 @@ static assay_status read_image(exr_job *job)
 }
 
 assay_status assay_image_decode_exr(assay_context *context, const uint8_t *bytes, size_t count,
-                                    const char *name, assay_image **image_out)
+                                    const char *name, const char *const *wanted,
+                                    assay_image **image_out)
 {
-    exr_job job = {.context = context, .name = name, .bytes = bytes, .count = count};
+    exr_job job = {
+        .context = context, .name = name, .bytes = bytes, .count = count, .wanted = wanted};
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     init.error_handler_fn          = on_error;
     init.alloc_fn                  = allocate_zeroed;

@@ -70,14 +70,53 @@ assay_status assay_layers_parse(assay_context *context, const char *text,
     return ASSAY_OK;
 }
 
+static assay_status check_size(assay_context *context, int width, int height)
+{
+    if ((uint64_t)width * (uint64_t)height > ASSAY_RENDER_MAX_PIXELS) {
+        return assay_fail(context, ASSAY_ERR_LIMIT,
+                          "an image of %d x %d pixels is too large to render; at most %u pixels",
+                          width, height, ASSAY_RENDER_MAX_PIXELS);
+    }
+    return ASSAY_OK;
+}
+
+uint64_t assay_film_pixel_bytes(assay_layer_set layers)
+{
+    uint64_t film = 0, channels = 0;
+    for (int q = 0; q < ASSAY_FILM_COUNT; q++) {
+        if (layers & QUANTITY[q].group) {
+            film += sizeof(film_cell);
+            channels += 6;
+        }
+    }
+    if (layers & ASSAY_LAYERS_GBUFFER) {
+        film += sizeof(assay_visible_point);
+        channels += 17;
+    }
+    channels += layers & ASSAY_LAYERS_COLOR ? 1 : 0;
+    channels += layers & ASSAY_LAYERS_IRRADIANCE ? 1 : 0;
+    return film + channels * sizeof(float);
+}
+
+assay_status assay_film_ask(assay_context *context, int width, int height, assay_layer_set layers,
+                            uint64_t more)
+{
+    char               what[80];
+    const uint64_t     pixels = (uint64_t)width * (uint64_t)height;
+    const assay_status status = check_size(context, width, height);
+    snprintf(what, sizeof what, "an image of %d x %d pixels with its layers", width, height);
+    return status != ASSAY_OK
+               ? status
+               : assay_memory_ask(context, pixels * (assay_film_pixel_bytes(layers) + more), what);
+}
+
 assay_status assay_film_create(assay_context *context, int width, int height,
                                assay_layer_set layers, assay_film **film_out)
 {
-    const uint64_t pixels = (uint64_t)width * (uint64_t)height;
-    if (pixels > ASSAY_FILM_MAX_PIXELS) {
-        return assay_fail(context, ASSAY_ERR_LIMIT,
-                          "an image of %d x %d pixels is too large to render; at most %u pixels",
-                          width, height, ASSAY_FILM_MAX_PIXELS);
+    const uint64_t     pixels = (uint64_t)width * (uint64_t)height;
+    const assay_status status = check_size(context, width, height);
+    if (status != ASSAY_OK) {
+        return status;
     }
     assay_film *film = assay_allocate(context, 1, sizeof *film);
     if (!film) {

@@ -47,11 +47,18 @@ typedef struct {
 
 typedef struct assay_film assay_film;
 
-/* Errors: LIMIT (more pixels than ASSAY_FILM_MAX_PIXELS), MEMORY. */
-#define ASSAY_FILM_MAX_PIXELS (1u << 26)
+/* Errors: LIMIT (more pixels than ASSAY_RENDER_MAX_PIXELS), MEMORY. */
 assay_status assay_film_create(assay_context *context, int width, int height,
                                assay_layer_set layers, assay_film **film_out);
 void         assay_film_destroy(assay_film *film);
+
+/* Bytes of a pixel of a film, and of the image that it becomes. */
+uint64_t assay_film_pixel_bytes(assay_layer_set layers);
+
+/* Whether a film of this size, the image that it becomes, and `more` bytes a pixel will find room.
+ * Errors: as assay_film_create, with a message that says how much is wanted. */
+assay_status assay_film_ask(assay_context *context, int width, int height, assay_layer_set layers,
+                            uint64_t more);
 
 /* The largest sample: its square, and so the variance, is a float yet. */
 #define ASSAY_FILM_MAX_VALUE 0x1p63

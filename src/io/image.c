@@ -11,6 +11,7 @@
 #include "core/hash.h"
 #include "io/compare_channels.h"
 #include "io/image_data.h"
+#include "io/image_decode.h"
 #include "io/read_file.h"
 
 enum { MAX_NAME = 255 };
@@ -256,10 +257,11 @@ void assay_image_digest(const assay_image *image, char digest_out[65])
 }
 
 assay_status assay_image_decode(assay_context *context, const uint8_t *bytes, size_t count,
-                                const char *name, assay_image **image_out)
+                                const char *name, const char *const *wanted,
+                                assay_image **image_out)
 {
     if (count >= 4 && memcmp(bytes, "v/1\001", 4) == 0) {
-        return assay_image_decode_exr(context, bytes, count, name, image_out);
+        return assay_image_decode_exr(context, bytes, count, name, wanted, image_out);
     }
     if (count >= 2 && memcmp(bytes, "#?", 2) == 0) {
         return assay_image_decode_hdr(context, bytes, count, name, image_out);
@@ -274,7 +276,7 @@ assay_status assay_image_read(assay_context *context, const char *path, assay_im
     size_t       count  = 0;
     assay_status status = assay_read_file(context, path, ASSAY_IMAGE_MAX_FILE, &bytes, &count);
     if (status == ASSAY_OK) {
-        status = assay_image_decode(context, bytes, count, path, image_out);
+        status = assay_image_decode(context, bytes, count, path, NULL, image_out);
         assay_release(context, bytes);
     }
     return status;

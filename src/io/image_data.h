@@ -25,13 +25,10 @@ struct assay_image {
 /* Whether a name belongs to the header fields that OpenEXR keeps for itself ("compression"). */
 bool assay_image_attribute_reserved(const char *name);
 
-/* An image from a file's bytes; name is for messages.  Errors as assay_image_read. */
-assay_status assay_image_decode(assay_context *context, const uint8_t *bytes, size_t count,
-                                const char *name, assay_image **image_out);
-
-/* The two formats, by themselves. */
+/* The two formats of image_decode.h, by themselves. */
 assay_status assay_image_decode_exr(assay_context *context, const uint8_t *bytes, size_t count,
-                                    const char *name, assay_image **image_out);
+                                    const char *name, const char *const *wanted,
+                                    assay_image **image_out);
 assay_status assay_image_decode_hdr(assay_context *context, const uint8_t *bytes, size_t count,
                                     const char *name, assay_image **image_out);
 

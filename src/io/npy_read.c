@@ -261,7 +261,11 @@ assay_status assay_array_decode_npy(assay_context *context, const uint8_t *bytes
     if (status == ASSAY_OK) {
         status = assay_array_create(context, header.shape[0], header.shape[1], &array);
     }
+    if (status == ASSAY_OK && !(array->name = assay_copy_text(context, name))) {
+        status = assay_fail_memory(context, name);
+    }
     if (status != ASSAY_OK) {
+        assay_array_destroy(array);
         return status;
     }
     for (size_t i = 0; i < array->rows * array->columns; i++) {

@@ -64,6 +64,9 @@ static assay_status read_all(assay_context *context, const char *path, int fd, u
 assay_status assay_read_file(assay_context *context, const char *path, uint64_t limit,
                              uint8_t **bytes_out, size_t *count_out)
 {
+    if (!*path) {
+        return assay_fail(context, ASSAY_ERR_NOT_FOUND, "the name of a file is empty");
+    }
     const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     if (fd < 0) {
         return fail_read(context, path, errno);

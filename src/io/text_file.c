@@ -10,6 +10,10 @@ assay_status assay_text_write(assay_context *context, const char *path, const ch
     if (status != ASSAY_OK) {
         return status;
     }
-    assay_atomic_file_write(file, text, strlen(text));
+    const size_t length = strlen(text);
+    assay_atomic_file_write(file, text, length);
+    if (length > 0 && text[length - 1] != '\n') {
+        assay_atomic_file_write(file, "\n", 1);
+    }
     return assay_atomic_file_commit(file);
 }

@@ -5,6 +5,7 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/process.h"
+#include "io/array_data.h"
 #include "methods/run.h"
 
 bool assay_probe_column_name(int column, char name_out[32])
@@ -36,9 +37,10 @@ static assay_status read_points(assay_context *context, const assay_array *table
                                 probe_work_data *data)
 {
     const size_t rows = assay_array_rows(table);
+    const char  *name = assay_array_name(table, "points");
     if (assay_array_columns(table) != 6) {
         return assay_fail(context, ASSAY_ERR_ARGUMENT,
-                          "points: the table must have 6 columns (x y z nx ny nz), not %zu",
+                          "%s: the table must have 6 columns (x y z nx ny nz), not %zu", name,
                           assay_array_columns(table));
     }
     data->positions = assay_allocate(context, rows, sizeof *data->positions);
@@ -51,12 +53,12 @@ static assay_status read_points(assay_context *context, const assay_array *table
         data->positions[i] = vec3(v[0], v[1], v[2]);
         data->normals[i]   = unit(vec3(v[3], v[4], v[5]));
         if (!vec3_finite(data->positions[i]) || !vec3_finite(vec3(v[3], v[4], v[5]))) {
-            return assay_fail(context, ASSAY_ERR_DOMAIN, "points: row %zu (from 0) is not finite",
+            return assay_fail(context, ASSAY_ERR_DOMAIN, "%s: row %zu (from 0) is not finite", name,
                               i);
         }
         if (!(fabs(vec3_length(data->normals[i]) - 1.0) < 1e-6)) {
             return assay_fail(context, ASSAY_ERR_ARGUMENT,
-                              "points: row %zu (from 0) has no normal: its length is 0", i);
+                              "%s: row %zu (from 0) has no normal: its length is 0", name, i);
         }
     }
     data->points = (assay_probe_points){rows, data->positions, data->normals};

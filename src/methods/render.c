@@ -10,6 +10,7 @@
 #include "core/numerics.h"
 #include "core/process.h"
 #include "methods/dump.h"
+#include "methods/metadata.h"
 #include "methods/run.h"
 
 assay_render_options assay_render_options_default(void)
@@ -57,7 +58,12 @@ static assay_status find_camera(const assay_scene *scene, const char *name, doub
     return ASSAY_OK;
 }
 
-static assay_status check_options(assay_context *context, const assay_render_options *options)
+/* A dump holds three channels of the image once more while it writes them, and then the file that
+ * they became, which is hardly larger. */
+enum { DUMP_PIXEL_BYTES = 2 * 3 * (int)sizeof(float) };
+
+static assay_status check_options(assay_context *context, const assay_render_options *options,
+                                  assay_layer_set *layers_out)
 {
     if (options->width < 1 || options->height < 1 || options->width > ASSAY_IMAGE_MAX_SIDE ||
         options->height > ASSAY_IMAGE_MAX_SIDE) {
@@ -65,70 +71,10 @@ static assay_status check_options(assay_context *context, const assay_render_opt
                           "an image must be 1 to %d pixels a side, not %d x %d",
                           ASSAY_IMAGE_MAX_SIDE, options->width, options->height);
     }
-    /* The film says so, too, but only after the tree is built. */
-    if ((uint64_t)options->width * (uint64_t)options->height > ASSAY_FILM_MAX_PIXELS) {
-        return assay_fail(context, ASSAY_ERR_LIMIT,
-                          "an image of %d x %d is too large to render: at most %u pixels",
-                          options->width, options->height, ASSAY_FILM_MAX_PIXELS);
-    }
-    return ASSAY_OK;
-}
-
-/* ---- metadata ---- */
-
-static assay_status set_text(assay_image *image, assay_status status, const char *name,
-                             const char *value)
-{
-    return status != ASSAY_OK ? status : assay_image_set_attribute(image, name, value);
-}
-
-static assay_status set_vector(assay_image *image, assay_status status, const char *name,
-                               assay_vec3 v)
-{
-    char text[96];
-    snprintf(text, sizeof text, "%.17g %.17g %.17g", v.x, v.y, v.z);
-    return set_text(image, status, name, text);
-}
-
-static assay_status set_number(assay_image *image, assay_status status, const char *name, double x)
-{
-    char text[32];
-    snprintf(text, sizeof text, "%.17g", x);
-    return set_text(image, status, name, text);
-}
-
-static assay_status describe_camera(assay_image *image, const assay_camera *camera)
-{
-    assay_status s = set_text(image, ASSAY_OK, "assay:camera", camera->name);
-    s              = set_vector(image, s, "assay:camera.position", camera->position);
-    s              = set_vector(image, s, "assay:camera.forward", camera->forward);
-    s              = set_vector(image, s, "assay:camera.up", camera->up);
-    s              = set_vector(image, s, "assay:camera.right", camera->right);
-    if (camera->orthographic) {
-        s = set_number(image, s, "assay:camera.xmag", camera->xmag);
-        return set_number(image, s, "assay:camera.ymag", camera->ymag);
-    }
-    return set_number(image, s, "assay:camera.yfov", camera->yfov);
-}
-
-static assay_status describe(assay_image *image, const assay_scene *scene,
-                             const assay_method *method, const assay_params *params,
-                             const assay_frame *frame)
-{
-    char seed[32];
-    snprintf(seed, sizeof seed, "%llu", (unsigned long long)frame->seed);
-    assay_status s = set_text(image, ASSAY_OK, "assay:version", assay_version());
-    s              = set_text(image, s, "assay:method", method->name);
-    s              = set_text(image, s, "assay:seed", seed);
-    s              = set_text(image, s, "assay:scene.digest", scene->digest);
-    s              = set_number(image, s, "assay:scene.time", scene->time);
-    s              = s != ASSAY_OK ? s : describe_camera(image, frame->camera);
-    for (const assay_param_desc *p = method->params; p->name && s == ASSAY_OK; p++) {
-        char name[96];
-        snprintf(name, sizeof name, "assay:%s.%s", method->name, p->name);
-        s = set_text(image, s, name, assay_params_text(params, p->name));
-    }
-    return s;
+    const assay_status status = assay_layers_parse(context, options->layers, layers_out);
+    return status != ASSAY_OK ? status
+                              : assay_film_ask(context, options->width, options->height,
+                                               *layers_out, options->dump ? DUMP_PIXEL_BYTES : 0);
 }
 
 /* ---- running ---- */
@@ -149,7 +95,7 @@ static assay_status make_image(const assay_method *method, const assay_params *p
         status = assay_film_develop(film, &image);
     }
     if (status == ASSAY_OK) {
-        status = describe(image, frame->world->scene, method, params, frame);
+        status = assay_metadata_add(image, method, params, frame);
     }
     if (status == ASSAY_OK && frame->dump) {
         status = assay_dump_image(frame->context, image, frame->dump);
@@ -209,10 +155,7 @@ assay_status assay_render(assay_scene *scene, const char *method_name, const ass
                            .seed    = options->seed};
     assay_status status = assay_run_find(context, method_name, &method);
     if (status == ASSAY_OK) {
-        status = check_options(context, options);
-    }
-    if (status == ASSAY_OK) {
-        status = assay_layers_parse(context, options->layers, &frame.layers);
+        status = check_options(context, options, &frame.layers);
     }
     if (status == ASSAY_OK) {
         const double aspect = (double)options->width / (double)options->height;

@@ -86,7 +86,10 @@ assay_status assay_gltf_read_file(assay_gltf_loader *loader, const char *path, c
                                   assay_gltf_bytes *bytes_out)
 {
     assay_gltf_bytes bytes = {0};
-    const int        file  = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (!*path) {
+        return assay_fail(loader->context, ASSAY_ERR_NOT_FOUND, "the name of a file is empty");
+    }
+    const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) {
         return assay_fail(loader->context, ASSAY_ERR_NOT_FOUND, "%s: cannot be opened: %s", name,
                           strerror(errno));

@@ -151,8 +151,9 @@ static assay_status load_extensions(assay_gltf_loader *loader, const assay_json 
                               : status;
 }
 
-/* Base colour on both sides and emission as it was: nothing else remains. */
-static void make_diffuse(assay_material *material)
+/* Base colour on both sides and emission as it was: nothing else remains.  factor is the file's
+ * baseColorFactor: a diffuse reflectance of extras.assay goes with the model that it belongs to. */
+static void make_diffuse(assay_material *material, const double factor[4])
 {
     const assay_material from    = *material;
     *material                    = default_material();
@@ -165,7 +166,7 @@ static void make_diffuse(assay_material *material)
     material->base_color_texture = from.base_color_texture;
     material->emissive_texture   = from.emissive_texture;
     for (int c = 0; c < 3; c++) {
-        material->base_color[c] = from.base_color[c];
+        material->base_color[c] = factor[c];
     }
 }
 
@@ -183,11 +184,13 @@ static assay_status load_material(assay_gltf_loader *loader, const assay_json *j
     if (status == ASSAY_OK) {
         status = load_extensions(loader, json, place, material);
     }
+    double factor[4];
+    memcpy(factor, material->base_color, sizeof factor);
     if (status == ASSAY_OK) {
         status = assay_gltf_load_brdf(loader, assay_json_member(json, "extras"), place, material);
     }
     if (status == ASSAY_OK && loader->scene->options.force_diffuse) {
-        make_diffuse(material);
+        make_diffuse(material, factor);
     }
     return status;
 }

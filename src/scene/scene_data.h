@@ -156,7 +156,9 @@ struct assay_scene {
     assay_context      *context;
     char               *path;
     assay_scene_options options;
-    char                digest[65];
+    char                digest[65];             /* of all files and the options           */
+    char                files_digest[65];       /* of the glTF file, buffers and images   */
+    char                environment_digest[65]; /* of the environment map; "" without one */
     bool                is_static;      /* no animation: every time looks the same           */
     bool                camera_is_made; /* the only camera is one that frames the scene      */
     bool                warnings_lost;  /* memory was refused for one                        */

@@ -10,6 +10,7 @@
 #include "assay/image.h"
 #include "core/alloc.h"
 #include "core/context.h"
+#include "io/image_decode.h"
 #include "scene/environment.h"
 #include "scene/gltf_loader.h"
 #include "scene/scene_build.h"
@@ -123,21 +124,40 @@ static assay_status build_scratch(assay_gltf_loader *loader)
     return assay_scene_build_scratch(loader->scene);
 }
 
+/* Until here the hash has seen the scene's own files alone; a copy of it ends here. */
+static void finish_files_digest(const assay_gltf_loader *loader)
+{
+    assay_hash files = loader->hash;
+    assay_hash_finish(&files, loader->scene->files_digest);
+}
+
+static void digest_of(const assay_gltf_bytes *bytes, char digest_out[65])
+{
+    assay_hash hash;
+    assay_hash_start(&hash);
+    assay_hash_add(&hash, bytes->bytes, (size_t)bytes->count);
+    assay_hash_finish(&hash, digest_out);
+}
+
 static assay_status load_environment(assay_gltf_loader *loader)
 {
     const assay_scene_options *options = &loader->scene->options;
     assay_gltf_bytes           bytes   = {0};
     assay_image               *image   = NULL;
+    finish_files_digest(loader);
     if (!options->environment_path) {
         return ASSAY_OK;
     }
     char name[512];
     assay_text_clean(options->environment_path, name, sizeof name);
     assay_status status = assay_gltf_read_file(loader, options->environment_path, name, &bytes);
-    assay_gltf_release_bytes(loader->context, &bytes);
     if (status == ASSAY_OK) {
-        status = assay_image_read(loader->context, options->environment_path, &image);
+        static const char *const channels[] = {"R", "G", "B", NULL};
+        digest_of(&bytes, loader->scene->environment_digest);
+        status = assay_image_decode(loader->context, bytes.bytes, (size_t)bytes.count, name,
+                                    channels, &image);
     }
+    assay_gltf_release_bytes(loader->context, &bytes);
     if (status == ASSAY_OK) {
         status = assay_environment_create(loader->context, image, options->environment_scale,
                                           options->environment_rotation, options->environment_path,

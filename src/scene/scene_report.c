@@ -98,6 +98,8 @@ const char *assay_scene_warning(const assay_scene *scene, uint32_t index)
 
 const char *assay_scene_digest(const assay_scene *scene) { return scene->digest; }
 
+const char *assay_scene_files_digest(const assay_scene *scene) { return scene->files_digest; }
+
 /* ---- JSON ---- */
 
 static bool add_number(cJSON *object, const char *name, double value)
@@ -246,6 +248,7 @@ static bool fill(cJSON *root, const assay_scene *scene)
 {
     const assay_scene_info info = assay_scene_describe(scene);
     return add_text(root, "path", scene->path) && add_text(root, "digest", scene->digest) &&
+           add_text(root, "files_digest", scene->files_digest) &&
            add_number(root, "time", scene->time) && add_counts(root, &info) &&
            add_bounds(root, &info) && add_cameras(root, scene) && add_lights(root, scene) &&
            add_animations(root, scene) && add_number(root, "duration", info.duration) &&

@@ -18,7 +18,7 @@ typedef struct {
     RTCBVH                    tree;
     struct RTCBuildPrimitive *primitives;
     size_t                    primitive_count;
-    ssize_t                   embree_bytes;
+    uint64_t                  embree_bytes; /* that it holds, as it says */
     char                      message[256]; /* Embree's words                                  */
     raw_node                  spare_node;   /* handed out where Embree refuses memory: it goes */
     raw_leaf                  spare_leaf;   /* on building, and what it builds is thrown away  */
@@ -169,13 +169,26 @@ static bool machine_has(const char *isa)
 #endif
 }
 
-/* Embree may use this much memory in tests of its refusals. */
+/* Embree's memory counts as the context's own; tests of its refusals set a limit of their own. What
+ * is refused Embree gives up without saying so again. */
 static bool within_limit(void *user, ssize_t bytes, bool done)
 {
-    builder *b = user;
+    builder       *b     = user;
+    const uint64_t limit = (uint64_t)b->bvh->tuning.embree_limit;
     (void)done;
-    b->embree_bytes += bytes;
-    return b->embree_bytes <= b->bvh->tuning.embree_limit;
+    if (bytes < 0) {
+        const uint64_t freed =
+            (uint64_t)-bytes < b->embree_bytes ? (uint64_t)-bytes : b->embree_bytes;
+        assay_memory_discharge(b->bvh->context, freed);
+        b->embree_bytes -= freed;
+        return true;
+    }
+    if ((limit > 0 && b->embree_bytes + (uint64_t)bytes > limit) ||
+        !assay_memory_charge(b->bvh->context, (uint64_t)bytes)) {
+        return false;
+    }
+    b->embree_bytes += (uint64_t)bytes;
+    return true;
 }
 
 static assay_status open_device(builder *b, const char *isa)
@@ -192,9 +205,7 @@ static assay_status open_device(builder *b, const char *isa)
                                 "Embree cannot make a device with '%s'", config);
     }
     rtcSetDeviceErrorFunction(b->device, keep_message, b);
-    if (b->bvh->tuning.embree_limit > 0) {
-        rtcSetDeviceMemoryMonitorFunction(b->device, within_limit, b);
-    }
+    rtcSetDeviceMemoryMonitorFunction(b->device, within_limit, b);
     return ASSAY_OK;
 }
 
@@ -262,6 +273,7 @@ assay_status bvh_build(assay_bvh *bvh, const char *isa)
     if (b.device) {
         rtcReleaseDevice(b.device);
     }
+    assay_memory_discharge(bvh->context, b.embree_bytes);
     assay_release(bvh->context, b.primitives);
     return status;
 }

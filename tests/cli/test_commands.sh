@@ -40,6 +40,34 @@ for command in render scene methods diff; do
     [ -z "$missing" ]
     result $? "$command --help names every option of its table $missing"
 done
+# The man page has a section a command, and in it every option of the help with its argument, and no
+# other.
+man_options() { # COMMAND
+    sed 's/\\f[A-Z]//g; s/\\//g' "$man" | awk -v command="assay $1" '
+        /^\.S[SH]/ { in_section = index($0, "\"" command "\"") > 0 }
+        in_section && after && sub(/^(-., )?--/, "--") { print }
+        { after = /^\.TP/ }' | sort
+}
+help_options() { # COMMAND
+    "$assay" $1 --help | sed -n '/^Parameters of/q; s/^  \(-., \|    \)\(--[a-z-]*\) \([^ ]*\).*/\2 \3/p' |
+        sed 's/ $//' | sort
+}
+same_options() { # COMMAND
+    man_options $1 > "$folder/man"
+    help_options $1 > "$folder/help"
+    [ -s "$folder/help" ] && diff "$folder/man" "$folder/help" > "$folder/difference"
+}
+man=docs/assay.1
+for command in render scene methods diff; do
+    same_options $command || sed 's/^/# /' "$folder/difference"
+    same_options $command
+    result $? "the man page has the options of $command"
+done
+grep -v 'heat.-map' docs/assay.1 > "$folder/cut.1"
+man=$folder/cut.1
+! same_options diff
+result $? "mutant: an option that the man page lacks is seen"
+
 refuses "unknown command" 2 "frobnicate" frobnicate
 refuses "unknown command that looks like an option" 2 "--frobnicate" --frobnicate
 for command in scene methods diff; do
@@ -50,7 +78,8 @@ done
 
 # ---- render: what is refused; WORD | ARGUMENTS ----
 while IFS='|' read -r word arguments; do
-    refuses "render $arguments" 2 "$word" render $box -o "$out/a.exr" $small $arguments
+    case $arguments in *--points*) size= ;; *) size=$small ;; esac
+    refuses "render $arguments" 2 "$word" render $box -o "$out/a.exr" $size $arguments
 done <<'TABLE'
 --frobnicate|--frobnicate
 --frobnicate|--frobnicate 3
@@ -71,7 +100,8 @@ takes no value|--quiet=1
 --size '+8x8'|--size +8x8
 --size '65537x1'|--size 65537x1
 --size '8x99999999999999999999'|--size 8x99999999999999999999
-65536 x 65536|--size 65536x65536
+67108864 pixels|--size 65536x65536
+67108864 pixels|--size 8192x8193
 --seed '-1'|--seed -1
 --seed '1.5'|--seed 1.5
 --seed '18446744073709551616'|--seed 18446744073709551616
@@ -143,7 +173,28 @@ scene|--scene-index 7
 one scene at a time|another.gltf
 table alone|--points p.npy --png a.png
 table alone|--points p.npy --dump d
+no --camera|--points p.npy --camera 0
+no --size|--points p.npy --size 4x4
+no --layers|--points p.npy --layers all
+--frames and --time|--frames 0:1 --time 0
+--fps without --frames|--fps 24
+--exposure without --png|--exposure 0
+--env and --background|--env e.exr --background 0,0,0
+--env-scale without --env|--env-scale 1
+--env-rotation-deg without --env|--env-rotation-deg 0
+--env '': takes the name|--env=
+--points '': takes the name|--points=
+--memory-limit '0'|--memory-limit 0
+--memory-limit '-1'|--memory-limit -1
+--memory-limit '4GB'|--memory-limit 4GB
+--memory-limit 'G'|--memory-limit G
+--memory-limit '16777216T'|--memory-limit 16777216T
+--memory-limit 'lots'|--memory-limit lots
 TABLE
+refuses "render: a scene without a name" 2 "no scene" render "" -o "$out/a.exr"
+refuses "scene: --env and --background" 2 "--env and --background" scene $box --env e.exr \
+    --background 0,0,0
+refuses "scene: --env-scale alone" 2 "--env-scale without --env" scene $box --env-scale 2
 refuses "render without a scene" 2 "no scene" render -o "$out/a.exr"
 refuses "render without an output" 2 "-o OUT.exr" render $box
 refuses "render: nothing at all" 2 "no scene" render
@@ -319,6 +370,38 @@ accepts "--points, gradients off" render $box --spp 2 --points "$folder/points.n
 [ "$(wc -c < "$folder/r.npy")" -lt $((2 * 54 * 8)) ]
 result $? "--points, gradients off: fewer columns"
 
+write_npy "$folder/bad.npy" "1, 6" 0 h 0 0 0 0
+refuses "--points: the file with the bad row is named" 2 "bad.npy: row 0" render $box --spp 2 \
+    --points "$folder/bad.npy" -o "$out/r.npy"
+refuses "--points with --target-error" 2 "target_error" render $box --spp 2 --target-error 0.1 \
+    --points "$folder/points.npy" -o "$out/r.npy"
+accepts "--points with --frames" render $moving --spp 1 --points "$folder/points.npy" \
+    --frames 0:1 -o "$folder/r#.npy"
+accepts "--stats" render $box $small -o "$b" --stats "$folder/s.json" --dump "$folder/ends"
+[ "$(tail -c 1 "$folder/s.json" | wc -l)" -eq 1 ] && [ "$(tail -c 1 "$folder/ends/manifest.json" | wc -l)" -eq 1 ]
+result $? "JSON files end with a newline"
+
+# ---- memory ----
+refuses "an image larger than --memory-limit" 3 \
+    "2000 x 2000 pixels with its layers: it needs 2.67 GiB" render $box --size 2000x2000 \
+    --memory-limit 300M -o "$out/a.exr" --dump "$out/d"
+refuses "--memory-limit is named" 3 "of a limit of 300 MiB" render $box --size 2000x2000 \
+    --memory-limit 300M -o "$out/a.exr"
+accepts "--memory-limit that is enough" render $box $small --memory-limit 100M -o "$b"
+same "--memory-limit does not change the image" "$a" "$b"
+accepts "--memory-limit none" render $box $small --memory-limit none -o "$b"
+refuses "scene: --memory-limit" 3 "out of memory" scene $box --memory-limit 40K
+accepts "scene: --memory-limit that is enough" scene $box --memory-limit 1G
+refuses "diff: --memory-limit" 3 "out of memory" diff "$a" "$a" --memory-limit 16K
+accepts "diff: --memory-limit that is enough" diff "$a" "$a" --memory-limit 100M
+cat > "$folder/zeros.gltf" << 'EOF'
+{"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}],
+ "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+ "accessors": [{"componentType": 5126, "count": 25165824, "type": "VEC3", "min": [0, 0, 0], "max": [0, 0, 0]}]}
+EOF
+refuses "a small file that asks for much memory" 3 "it needs 288 MiB" scene "$folder/zeros.gltf" \
+    --memory-limit 200M
+
 # ---- scene and methods ----
 accepts "scene" scene $box
 grep -q '^  camera 0 ' "$folder/stdout" && grep -q '^  digest  *[0-9a-f]\{64\}$' "$folder/stdout"
@@ -362,6 +445,8 @@ refuses "diff: no channel in common" 2 "channel" diff "$folder/color.exr" "$fold
 "$assay" render $box --size 4x8 --spp 1 -o "$folder/other.exr"
 refuses "diff: other size" 2 "8 x 8 and 4 x 8" diff "$a" "$folder/other.exr" \
     --heat-map "$out/h.png"
+refuses "diff: an image without a name" 2 "name of an image" diff "" "$a"
+refuses "diff: --scale without --heat-map" 2 "--scale without --heat-map" diff "$a" "$a" --scale 1
 refuses "diff: one image" 2 "two images" diff "$a"
 refuses "diff: none" 2 "two images" diff
 refuses "diff: three images" 2 "two images" diff "$a" "$a" "$a"

@@ -22,7 +22,8 @@ each_output "folder is missing" 3 "nowhere" "$folder/nowhere/x"
 each_output "is a folder" 3 "is a folder" "$out"
 each_output "is to be a folder" 3 "is a folder" "$folder/x/"
 each_output "folder is a file" 3 "Not a directory" "$folder/a.exr/x"
-each_output "empty name" 3 "no name" ""
+each_output "empty name" 2 "name of an output is empty" ""
+refuses "bundle: empty name" 2 "name of an output is empty" $plain -o "$folder/whole.exr" --dump ""
 each_output "name is too long" 3 "File name too long" \
     "$folder/$(printf '%0300d' 0)"
 if [ "$(id -u)" -eq 0 ]; then

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "io/image_data.h"
+#include "io/image_decode.h"
 #include "io/npy.h"
 #include "scene/texture.h"
 
@@ -35,7 +36,7 @@ static void read_table(assay_context *context, const uint8_t *bytes, size_t coun
 static void read_image(assay_context *context, const uint8_t *bytes, size_t count)
 {
     assay_image *image = NULL;
-    if (assay_image_decode(context, bytes, count, "fuzz", &image) == ASSAY_OK) {
+    if (assay_image_decode(context, bytes, count, "fuzz", NULL, &image) == ASSAY_OK) {
         char digest[65];
         assay_image_digest(image, digest);
         assay_image_destroy(image);

@@ -16,6 +16,7 @@
 #include "core/random.h"
 #include "io/half.h"
 #include "io/image_data.h"
+#include "io/image_decode.h"
 #include "support/broken.h"
 #include "support/exr_files.h"
 #include "support/failing_context.h"
@@ -249,7 +250,7 @@ static void every_compression_is_read(void **state)
             size_t              count = 0;
             uint8_t            *bytes = exr_file_bytes(&spec, &count);
             assay_image        *image = NULL;
-            assert_int_equal(assay_image_decode(*state, bytes, count, "x", &image), ASSAY_OK);
+            assert_int_equal(assay_image_decode(*state, bytes, count, "x", NULL, &image), ASSAY_OK);
             check_samples(image, &s, all[i]);
             assay_image_destroy(image);
             free(bytes);
@@ -275,10 +276,11 @@ static void unknown_compressions_are_named(void **state)
     assay_image        *image = NULL;
     uint8_t            *at    = find(bytes, count, "compression\0compression\0\1\0\0\0", 28);
     *at                       = EXR_COMPRESSION_DWAB;
-    assert_int_equal(assay_image_decode(*state, bytes, count, "x", &image), ASSAY_ERR_UNSUPPORTED);
+    assert_int_equal(assay_image_decode(*state, bytes, count, "x", NULL, &image),
+                     ASSAY_ERR_UNSUPPORTED);
     assert_non_null(strstr(assay_context_error(*state), "DWAB"));
     *at = 77;
-    assert_int_equal(assay_image_decode(*state, bytes, count, "x", &image), ASSAY_ERR_FORMAT);
+    assert_int_equal(assay_image_decode(*state, bytes, count, "x", NULL, &image), ASSAY_ERR_FORMAT);
     assert_null(image);
     free(bytes);
 }
@@ -296,7 +298,7 @@ static void chunks_stored_raw_are_taken_as_they_are(void **state)
     for (int compression = 0; compression < EXR_COMPRESSION_DWAA; compression++) {
         assay_image *image = NULL;
         *at                = (uint8_t)compression;
-        assert_int_equal(assay_image_decode(*state, bytes, count, "x", &image), ASSAY_OK);
+        assert_int_equal(assay_image_decode(*state, bytes, count, "x", NULL, &image), ASSAY_OK);
         check_samples(image, &s, EXR_COMPRESSION_NONE);
         assay_image_destroy(image);
     }
@@ -312,7 +314,7 @@ static void mipmaps_give_their_first_level(void **state)
     size_t       count = 0;
     uint8_t     *bytes = exr_file_bytes(&spec, &count);
     assay_image *image = NULL;
-    assert_int_equal(assay_image_decode(*state, bytes, count, "x", &image), ASSAY_OK);
+    assert_int_equal(assay_image_decode(*state, bytes, count, "x", NULL, &image), ASSAY_OK);
     check_samples(image, &s, EXR_COMPRESSION_ZIP);
     assay_image_destroy(image);
     free(bytes);
@@ -328,7 +330,7 @@ static void check_window(assay_context *context, exr_file_spec spec, const sampl
     assay_image  *image = NULL;
     assay_channel u;
     memory.log[0] = 0;
-    assert_int_equal(assay_image_decode(context, bytes, count, "x", &image), ASSAY_OK);
+    assert_int_equal(assay_image_decode(context, bytes, count, "x", NULL, &image), ASSAY_OK);
     assert_int_equal(assay_image_width(image), display.max.x - display.min.x + 1);
     assert_int_equal(assay_image_height(image), display.max.y - display.min.y + 1);
     assert_true(assay_image_find_channel(image, "U", &u));
@@ -367,7 +369,8 @@ static void the_image_is_the_display_window(void **state)
     size_t       count = 0;
     uint8_t     *bytes = exr_file_bytes(&spec, &count);
     assay_image *image = NULL;
-    assert_int_equal(assay_image_decode(*state, bytes, count, "x", &image), ASSAY_ERR_UNSUPPORTED);
+    assert_int_equal(assay_image_decode(*state, bytes, count, "x", NULL, &image),
+                     ASSAY_ERR_UNSUPPORTED);
     free(bytes);
 }
 
@@ -387,7 +390,7 @@ static void what_is_not_read_is_refused_by_name(void **state)
         size_t       count = 0;
         uint8_t     *bytes = exr_file_bytes(&spec, &count);
         assay_image *image = NULL;
-        assert_int_equal(assay_image_decode(*state, bytes, count, "x", &image),
+        assert_int_equal(assay_image_decode(*state, bytes, count, "x", NULL, &image),
                          ASSAY_ERR_UNSUPPORTED);
         assert_non_null(strstr(assay_context_error(*state), words[i]));
         free(bytes);
@@ -404,7 +407,7 @@ static void of_several_parts_the_first_is_read(void **state)
     uint8_t     *bytes = exr_file_bytes(&spec, &count);
     assay_image *image = NULL;
     memory.log[0]      = 0;
-    assert_int_equal(assay_image_decode(*state, bytes, count, "x", &image), ASSAY_OK);
+    assert_int_equal(assay_image_decode(*state, bytes, count, "x", NULL, &image), ASSAY_OK);
     check_samples(image, &s, EXR_COMPRESSION_ZIP);
     assert_non_null(strstr(memory.log, "first of 2 parts"));
     assay_image_destroy(image);
@@ -442,7 +445,8 @@ static void sizes_are_checked_before_memory_is_asked(void **state)
         put32(data + 12, rows[i].y);
         memcpy(display, data, 16);
         memory.asked = 0;
-        assert_int_equal(assay_image_decode(*state, bytes, count, "x", &image), rows[i].status);
+        assert_int_equal(assay_image_decode(*state, bytes, count, "x", NULL, &image),
+                         rows[i].status);
         assert_int_equal(memory.asked, 0);
         assert_null(image);
     }
@@ -451,8 +455,9 @@ static void sizes_are_checked_before_memory_is_asked(void **state)
 
 static assay_status read_bytes(assay_context *context, const uint8_t *bytes, size_t count)
 {
-    assay_image       *image  = NULL;
-    const assay_status status = assay_image_decode(context, bytes, count, "broken.exr", &image);
+    assay_image       *image = NULL;
+    const assay_status status =
+        assay_image_decode(context, bytes, count, "broken.exr", NULL, &image);
     assay_image_destroy(image);
     return status;
 }

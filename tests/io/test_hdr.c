@@ -13,6 +13,7 @@
 
 #include "core/random.h"
 #include "io/image_data.h"
+#include "io/image_decode.h"
 #include "support/broken.h"
 #include "support/failing_context.h"
 
@@ -173,7 +174,7 @@ static void every_coding_of_rows_is_read(void **state)
             for (int y = 0; y < 3; y++) {
                 put_row(&file, coding, pixels + (size_t)4 * (size_t)(width * y), width);
             }
-            assert_int_equal(assay_image_decode(*state, file.bytes, file.count, "x", &image),
+            assert_int_equal(assay_image_decode(*state, file.bytes, file.count, "x", NULL, &image),
                              ASSAY_OK);
             assert_true(is_picture(image, pixels, unit));
             pixels[4 * width] ^= 1; /* a pixel of another row would be seen */
@@ -193,7 +194,8 @@ static void rows_may_change_coding(void **state)
     for (int y = 0; y < 3; y++) {
         put_row(&file, (row_coding)y, pixels + 160 * y, 40);
     }
-    assert_int_equal(assay_image_decode(*state, file.bytes, file.count, "x", &image), ASSAY_OK);
+    assert_int_equal(assay_image_decode(*state, file.bytes, file.count, "x", NULL, &image),
+                     ASSAY_OK);
     assert_true(is_picture(image, pixels, unit));
     assay_image_destroy(image);
 }
@@ -209,7 +211,8 @@ static void exposures_are_divided_out(void **state)
     put_header(&file, "# a comment\nEXPOSURE=2.0\r\nCOLORCORR= 1 2.0 0.5 \nEXPOSURE= 3.5\nVIEW=x\n",
                40, 1);
     put_row(&file, CODING_NEW, pixels, 40);
-    assert_int_equal(assay_image_decode(*state, file.bytes, file.count, "x", &image), ASSAY_OK);
+    assert_int_equal(assay_image_decode(*state, file.bytes, file.count, "x", NULL, &image),
+                     ASSAY_OK);
     assert_true(is_picture(image, pixels, expected));
     assert_false(is_picture(image, pixels, unit));
     assay_image_destroy(image);
@@ -248,7 +251,8 @@ static void headers_are_judged(void **state)
         file.count              = 0;
         put(&file, rows[i].text, strlen(rows[i].text));
         put(&file, "abcd", 4);
-        const assay_status status = assay_image_decode(*state, file.bytes, file.count, "x", &image);
+        const assay_status status =
+            assay_image_decode(*state, file.bytes, file.count, "x", NULL, &image);
         if (status != rows[i].status) {
             fail_msg("row %d: '%s'", (int)i, assay_context_error(*state));
         }
@@ -274,7 +278,7 @@ static void malformed_rows_are_refused(void **state)
         assay_image      *image = NULL;
         put_header(&file, "", 8, 1);
         put(&file, rows[i].bytes, rows[i].count);
-        assert_int_equal(assay_image_decode(*state, file.bytes, file.count, "x", &image),
+        assert_int_equal(assay_image_decode(*state, file.bytes, file.count, "x", NULL, &image),
                          ASSAY_ERR_FORMAT);
         assert_null(image);
     }
@@ -282,8 +286,9 @@ static void malformed_rows_are_refused(void **state)
 
 static assay_status read_bytes(assay_context *context, const uint8_t *bytes, size_t count)
 {
-    assay_image       *image  = NULL;
-    const assay_status status = assay_image_decode(context, bytes, count, "broken.hdr", &image);
+    assay_image       *image = NULL;
+    const assay_status status =
+        assay_image_decode(context, bytes, count, "broken.hdr", NULL, &image);
     assay_image_destroy(image);
     return status;
 }

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "io/film.h"
 #include "support/failing_context.h"
 #include "support/measure.h"
 #include "support/near.h"
@@ -139,6 +140,68 @@ static void no_options(void **state)
     close_bench(&b);
 }
 
+static bool count_calls(void *user, const char *phase, double fraction)
+{
+    (void)phase;
+    (void)fraction;
+    ++*(int *)user;
+    return true;
+}
+
+/* What does not fit is refused before a tree is built or a ray is traced, with the sum of what
+ * film, image and dump will take; what fits it is rendered, and nothing is held afterwards. */
+static void memory_is_asked_for_up_front(void **state)
+{
+    (void)state;
+    const uint64_t        limit = UINT64_C(64) << 20;
+    int                   calls = 0;
+    assay_context_options asked = {
+        .threads = 1, .memory_limit = limit, .progress = count_calls, .user = &calls};
+    bench b = {0};
+    assert_int_equal(assay_context_create(&asked, &b.context), ASSAY_OK);
+    b.scene = lit_floor(b.context);
+    assert_int_equal(assay_method_params(b.context, "path", &b.params), ASSAY_OK);
+    set(&b, "spp", "1");
+    const uint64_t before = assay_context_memory_used(b.context);
+    calls                 = 0;
+    refuse(&b, "path", size(8192, 8192), ASSAY_ERR_MEMORY, "8192 x 8192 pixels with its layers");
+    refuse(&b, "path", size(8192, 8192), ASSAY_ERR_MEMORY, "of a limit of 64 MiB");
+    assert_int_equal(calls, 0);
+    assert_int_equal(assay_context_memory_used(b.context), before);
+    assay_image *image = render(&b, size(200, 200), NULL);
+    assert_true(calls > 0);
+    assay_image_destroy(image);
+    assert_int_equal(assay_context_memory_used(b.context), before);
+    close_bench(&b);
+}
+
+/* Film and image really take what is asked for. */
+static void what_is_asked_for_is_what_is_taken(void **state)
+{
+    (void)state;
+    static const struct {
+        const char     *text;
+        assay_layer_set set;
+    } groups[] = {{"color", ASSAY_LAYERS_COLOR},
+                  {"gbuffer", ASSAY_LAYERS_GBUFFER},
+                  {"split", ASSAY_LAYERS_SPLIT},
+                  {"irradiance", ASSAY_LAYERS_IRRADIANCE},
+                  {"all", ASSAY_LAYERS_ALL}};
+    enum { SIDE = 64 };
+    for (size_t i = 0; i < sizeof groups / sizeof groups[0]; i++) {
+        assay_context *context = measure_context(1);
+        assay_film    *film    = NULL;
+        assay_image   *image   = NULL;
+        const uint64_t asked   = assay_film_pixel_bytes(groups[i].set) * SIDE * SIDE;
+        assert_int_equal(assay_film_create(context, SIDE, SIDE, groups[i].set, &film), ASSAY_OK);
+        assert_int_equal(assay_film_develop(film, &image), ASSAY_OK);
+        assert_in_range(assay_context_memory_used(context), asked, asked + asked / 10);
+        assay_image_destroy(image);
+        assay_film_destroy(film);
+        assay_context_destroy(context);
+    }
+}
+
 /* ---- metadata ---- */
 
 static const char *attribute(const assay_image *image, const char *name)
@@ -178,9 +241,9 @@ static void metadata(void **state)
     }
     assert_string_equal(attribute(image, "assay:path.spp"), "3");
     assert_string_equal(attribute(image, "assay:path.estimator"), "nee");
-    /* version, method, seed, digest, time, camera, four vectors, yfov: and nothing that is not the
+    /* version, method, seed, 8 of the scene, camera, four vectors, yfov: and nothing that is not the
      * same on every machine. */
-    assert_int_equal(assay_image_attribute_count(image), 11 + params);
+    assert_int_equal(assay_image_attribute_count(image), 17 + params);
     assay_image_destroy(image);
     close_bench(&b);
 }
@@ -414,6 +477,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bad_options),
         cmocka_unit_test(no_options),
+        cmocka_unit_test(memory_is_asked_for_up_front),
+        cmocka_unit_test(what_is_asked_for_is_what_is_taken),
         cmocka_unit_test(metadata),
         cmocka_unit_test(metadata_makes_the_same_image),
         cmocka_unit_test(statistics),

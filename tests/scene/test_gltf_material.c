@@ -298,6 +298,28 @@ static void test_force_diffuse(void **state)
     assay_context_destroy(context);
 }
 
+/* The diffuse reflectance of extras.assay belongs to its model, and goes with it. */
+static void test_force_diffuse_drops_extras(void **state)
+{
+    assay_context      *context = gltf_context();
+    assay_scene_options options = assay_scene_options_default();
+    static const char   json[] =
+        "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.6,0.3,0.2,1]},\"extras\":{\"assay\":{"
+        "\"brdf\":\"phong\",\"exponent\":5,\"diffuse\":[0.1,0.1,0.1],\"specular\":[0.5,0.5,0.5]}}";
+    (void)state;
+    for (int forced = 0; forced < 2; forced++) {
+        options.force_diffuse       = forced;
+        assay_scene          *scene = load_material(context, &options, json);
+        const assay_material *m     = &scene->materials[0];
+        assert_int_equal(m->model, forced ? ASSAY_MATERIAL_LAMBERT : ASSAY_MATERIAL_PHONG);
+        assert_true(m->base_color[0] == (forced ? 0.6 : 0.1));
+        assert_true(m->base_color[1] == (forced ? 0.3 : 0.1));
+        assert_true(m->base_color[2] == (forced ? 0.2 : 0.1));
+        assay_scene_destroy(scene);
+    }
+    assay_context_destroy(context);
+}
+
 /* ---- lights ---- */
 
 static void test_lights(void **state)
@@ -347,11 +369,17 @@ static void test_lights(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_defaults),        cmocka_unit_test(test_core),
-        cmocka_unit_test(test_image_in_a_view), cmocka_unit_test(test_extensions),
-        cmocka_unit_test(test_unlit),           cmocka_unit_test(test_texture_transform),
-        cmocka_unit_test(test_solid),           cmocka_unit_test(test_phong_and_ward),
-        cmocka_unit_test(test_force_diffuse),   cmocka_unit_test(test_lights),
+        cmocka_unit_test(test_defaults),
+        cmocka_unit_test(test_core),
+        cmocka_unit_test(test_image_in_a_view),
+        cmocka_unit_test(test_extensions),
+        cmocka_unit_test(test_unlit),
+        cmocka_unit_test(test_texture_transform),
+        cmocka_unit_test(test_solid),
+        cmocka_unit_test(test_phong_and_ward),
+        cmocka_unit_test(test_force_diffuse_drops_extras),
+        cmocka_unit_test(test_force_diffuse),
+        cmocka_unit_test(test_lights),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,7 +8,7 @@
 
 #include <OpenEXR/openexr.h>
 
-enum { EXR_FILE_CHANNELS = 4 };
+enum { EXR_FILE_CHANNELS = 6 };
 
 /* samples: width * height of the type (HALF: uint16_t), row by row; names ascending. */
 typedef struct {

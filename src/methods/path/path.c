@@ -60,6 +60,11 @@ static assay_status prepare(void *state, const assay_frame *frame)
                           "parameter 'target_error' is the error of the colour: the layers must "
                           "have color among them");
     }
+    if (path->target_error > 0.0 && !frame->camera) {
+        return assay_fail(frame->context, ASSAY_ERR_ARGUMENT,
+                          "parameter 'target_error' is the error of an image: probes take spp "
+                          "samples");
+    }
     return ASSAY_OK;
 }
 
