@@ -1,6 +1,6 @@
 /* test_path_target.c - what `target_error` decides, and on how much.
  *
- * One pixel that holds the whole Cornell box is the hard case: a path in a few hundred sees the
+ * One pixel that holds the whole Cornell box is the hard case: a path in 171 sees the
  * lamp, so a handful of samples does not know its variance, and an image that stops on it is too
  * dark.  The mutant stops like that. */
 #include <math.h>
