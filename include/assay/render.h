@@ -50,13 +50,22 @@ typedef struct {
 /* Defaults: 512 x 512, first camera, seed 0, all layers. */
 ASSAY_API assay_render_options assay_render_options_default(void);
 
+/* What became of the error that a method was to go on to. */
+typedef enum {
+    ASSAY_TARGET_NONE,    /* none was asked for                                 */
+    ASSAY_TARGET_REACHED, /* it was reached                                     */
+    ASSAY_TARGET_MISSED   /* the method gave up before, and said so in a warning */
+} assay_error_target;
+
 /* What a render did.  Counts are exact and the same on every machine; seconds are not. */
 typedef struct {
     uint64_t camera_rays, scatter_rays, shadow_rays; /* rays traced, by kind                      */
     uint64_t samples;          /* camera paths                                              */
     uint64_t spp_min, spp_max; /* over pixels                                               */
     double   relative_error;   /* mean over pixels of the standard error of the pixel's
-                                  luminance / the image's mean luminance                   */
+                                  luminance / the image's mean luminance; NaN where it is not
+                                  known: one sample a pixel, no layer group color, probes   */
+    assay_error_target target;
     double seconds_build, seconds_render; /* wall                                                */
     uint64_t peak_memory; /* bytes, of the process                                     */
     uint64_t bvh_bytes, geometry_bytes, texture_bytes;

@@ -75,6 +75,18 @@ static bool add_params(cJSON *root, const render_job *job)
     return ok;
 }
 
+/* null stands for what is not known, or was not asked for. */
+static bool add_error(cJSON *root, const assay_render_stats *s)
+{
+    const bool known  = s->relative_error == s->relative_error;
+    const bool target = s->target != ASSAY_TARGET_NONE;
+    return (known ? cJSON_AddNumberToObject(root, "relative_error", s->relative_error)
+                  : cJSON_AddNullToObject(root, "relative_error")) &&
+           (target
+                ? cJSON_AddBoolToObject(root, "target_reached", s->target == ASSAY_TARGET_REACHED)
+                : cJSON_AddNullToObject(root, "target_reached"));
+}
+
 static assay_status write_stats(render_job *job, const char *path)
 {
     const assay_render_stats *s    = &job->stats;
@@ -85,8 +97,7 @@ static assay_status write_stats(render_job *job, const char *path)
         cJSON_AddStringToObject(root, "scene_digest", assay_scene_digest(job->scene)) &&
         add_rays(root, s) && cJSON_AddNumberToObject(root, "samples", (double)s->samples) &&
         cJSON_AddNumberToObject(root, "spp_min", (double)s->spp_min) &&
-        cJSON_AddNumberToObject(root, "spp_max", (double)s->spp_max) &&
-        cJSON_AddNumberToObject(root, "relative_error", s->relative_error) &&
+        cJSON_AddNumberToObject(root, "spp_max", (double)s->spp_max) && add_error(root, s) &&
         add_seconds(root, job) && add_memory(root, s) &&
         cJSON_AddNumberToObject(root, "threads", s->threads);
     char        *text = ok ? cJSON_Print(root) : NULL;
@@ -154,7 +165,7 @@ static void say_done(const render_job *job, const char *output)
     cli_console_clear(job->console);
     fprintf(stderr, "%s: %.3g million rays in %.2f s on %d threads", output, rays * 1e-6,
             s->seconds_render, s->threads);
-    if (s->samples) {
+    if (s->samples && s->relative_error == s->relative_error) {
         fprintf(stderr, ", mean relative error %.2g", s->relative_error);
     }
     fputc('\n', stderr);

@@ -21,6 +21,7 @@ struct assay_film {
     assay_layer_set      layers;
     film_cell           *cells[ASSAY_FILM_COUNT]; /* NULL where not asked for */
     assay_visible_point *visible;                 /* likewise                 */
+    assay_error_target   target;
 };
 
 /* Layer name, and the group it belongs to. */
@@ -204,15 +205,26 @@ assay_rgb assay_film_variance(const assay_film *film, uint64_t pixel, assay_film
 
 double assay_film_relative_error(const assay_film *film)
 {
-    const uint64_t pixels = (uint64_t)film->width * (uint64_t)film->height;
-    double         error = 0.0, light = 0.0;
-    for (uint64_t i = 0; film->cells[ASSAY_FILM_COLOR] && i < pixels; i++) {
+    const uint64_t   pixels = (uint64_t)film->width * (uint64_t)film->height;
+    const film_cell *cells  = film->cells[ASSAY_FILM_COLOR];
+    double           error = 0.0, light = 0.0;
+    if (!cells) {
+        return NAN;
+    }
+    for (uint64_t i = 0; i < pixels; i++) {
+        if (cells[i].count < 2) {
+            return NAN;
+        }
         const assay_rgb variance = assay_film_variance(film, i, ASSAY_FILM_COLOR);
         light += rgb_luminance(assay_film_mean(film, i, ASSAY_FILM_COLOR));
         error += rgb_luminance(rgb(sqrt(variance.r), sqrt(variance.g), sqrt(variance.b)));
     }
     return light > 0.0 ? error / light : 0.0;
 }
+
+void assay_film_set_target(assay_film *film, assay_error_target target) { film->target = target; }
+
+assay_error_target assay_film_target(const assay_film *film) { return film->target; }
 
 /* ---- development ---- */
 

@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "assay/image.h"
+#include "assay/render.h"
 #include "math/vec.h"
 
 /* Groups of layers that can be asked for. */
@@ -78,8 +79,13 @@ assay_rgb assay_film_variance(const assay_film *film, uint64_t pixel, assay_film
 
 /* Mean over pixels of the standard error of the pixel's luminance (the channels' errors added as if
  * they were fully correlated: never too small), divided by the mean luminance of the image; 0 for a
- * black image. */
+ * black image.  NaN where it cannot be known: without the layer group color, or where a pixel has
+ * less than two samples. */
 double assay_film_relative_error(const assay_film *film);
+
+/* Whether the error that was asked for was reached; NONE until it is set. */
+void               assay_film_set_target(assay_film *film, assay_error_target target);
+assay_error_target assay_film_target(const assay_film *film);
 
 /* All layers as an image.  Errors: MEMORY. */
 assay_status assay_film_develop(const assay_film *film, assay_image **image_out);

@@ -1,6 +1,7 @@
 /* run.c - the steps that every use of a method takes. */
 #include "methods/run.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #include "core/context.h"
@@ -57,6 +58,7 @@ void assay_run_fill_stats(const assay_film *film, const assay_frame *frame,
     stats->texture_bytes  = assay_scene_texture_bytes(frame->world->scene);
     stats->threads        = assay_context_threads(frame->context);
     if (!film) {
+        stats->relative_error = NAN;
         return;
     }
     const uint64_t pixels = (uint64_t)frame->width * (uint64_t)frame->height;
@@ -64,6 +66,7 @@ void assay_run_fill_stats(const assay_film *film, const assay_frame *frame,
     const assay_film_quantity paths =
         frame->layers & ASSAY_LAYERS_COLOR ? ASSAY_FILM_COLOR : ASSAY_FILM_DIRECT;
     stats->relative_error = assay_film_relative_error(film);
+    stats->target         = assay_film_target(film);
     stats->spp_min        = UINT64_MAX;
     for (uint64_t i = 0; i < pixels; i++) {
         const uint64_t n = assay_film_samples(film, i, paths);

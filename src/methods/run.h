@@ -21,7 +21,7 @@ assay_status assay_run_method(const assay_method *method, const assay_params *pa
                               const assay_frame *frame, assay_run_work work, void *user,
                               assay_ray_counts *counts);
 
-/* Counts and sizes; what only an image has stays 0 where film is NULL. */
+/* Counts and sizes; what only an image has stays 0 (its error: NaN) where film is NULL. */
 void assay_run_fill_stats(const assay_film *film, const assay_frame *frame,
                           const assay_ray_counts *counts, assay_render_stats *stats);
 

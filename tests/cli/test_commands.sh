@@ -155,6 +155,7 @@ unknown parameter ''|-p =3
 'target_error'|--target-error 2
 'target_error'|--target-error nan
 'target_error'|--target-error 0.5 --layers gbuffer
+'max_spp'|--target-error 0.5 --spp 9 --max-spp 8
 'max_spp'|--max-spp 0
 'gradients'|--gradients maybe
 'gradient_step'|--gradient-step -1

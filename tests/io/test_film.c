@@ -65,19 +65,24 @@ static void not_finite_is_refused(void **state)
     assay_context_destroy(context);
 }
 
-/* Two pixels of luminance 1 and 3 with standard errors 0.1 and 0.3: (0.1 + 0.3) / 4. */
+/* Two pixels of luminance 1 and 3 with standard errors 0.1 and 0.3: (0.1 + 0.3) / 4.  Not known
+ * while a pixel has less than two samples. */
 static void relative_error(void **state)
 {
     (void)state;
     assay_context *context = measure_context(1);
     assay_film    *film    = NULL;
     assert_int_equal(assay_film_create(context, 2, 1, ASSAY_LAYERS_COLOR, &film), ASSAY_OK);
-    assert_true(assay_film_relative_error(film) == 0.0);
     for (int s = -1; s <= 1; s += 2) { /* of two samples m +- d the standard error is d */
+        assert_true(isnan(assay_film_relative_error(film)));
         assay_film_add(film, 0, ASSAY_FILM_COLOR, rgb_grey(1.0 + 0.1 * s));
+        assert_true(isnan(assay_film_relative_error(film)));
         assay_film_add(film, 1, ASSAY_FILM_COLOR, rgb_grey(3.0 + 0.3 * s));
     }
     assert_true(fabs(assay_film_relative_error(film) - 0.1) < 1e-14);
+    assay_film_destroy(film);
+    assert_int_equal(assay_film_create(context, 2, 1, ASSAY_LAYERS_SPLIT, &film), ASSAY_OK);
+    assert_true(isnan(assay_film_relative_error(film)));
     assay_film_destroy(film);
     assay_context_destroy(context);
 }

@@ -1,5 +1,6 @@
 /* test_render_driver.c - what happens around a method: options, metadata, statistics, passes,
  * dumps, points.  The method is `path`. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -123,6 +124,10 @@ static void bad_options(void **state)
     options.layers = "gbuffer";
     set(&b, "target_error", "0.5");
     refuse(&b, "path", options, ASSAY_ERR_ARGUMENT, "target_error");
+    options.layers = NULL;
+    set(&b, "spp", "9");
+    set(&b, "max_spp", "8");
+    refuse(&b, "path", options, ASSAY_ERR_ARGUMENT, "max_spp");
     close_bench(&b);
 }
 
@@ -310,7 +315,14 @@ static void statistics(void **state)
     assay_image_destroy(render(&b, split, &stats));
     assert_int_equal(stats.samples, 0);
     assert_int_equal(stats.spp_min, 0);
-    assert_true(stats.relative_error == 0.0);
+    assert_true(isnan(stats.relative_error) && stats.target == ASSAY_TARGET_NONE);
+    /* One sample does not know its variance; two think they do. */
+    set(&b, "spp", "1");
+    assay_image_destroy(render(&b, size(7, 3), &stats));
+    assert_true(isnan(stats.relative_error));
+    set(&b, "spp", "2");
+    assay_image_destroy(render(&b, size(7, 3), &stats));
+    assert_true(stats.relative_error > 0.0);
     close_bench(&b);
 }
 

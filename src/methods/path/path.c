@@ -17,10 +17,11 @@ static const assay_param_desc PARAMS[] = {
     {"roulette_depth", ASSAY_PARAM_INT, "bounces", "5", 1, 1e6, NULL,
      "Russian roulette may end a path only after this bounce.", "[arvo90]"},
     {"target_error", ASSAY_PARAM_REAL, "", "0", 0, 1, NULL,
-     "Go on past spp until the mean relative standard error of the image is below this; 0 is off.",
+     "Go on past spp until the mean relative standard error of the image is below this; 0 is off. "
+     "Decides on no fewer than 64 samples a pixel and 4096 in all.",
      ""},
-    {"max_spp", ASSAY_PARAM_INT, "samples", "65536", 1, 1e9, NULL, "Where target_error gives up.",
-     ""},
+    {"max_spp", ASSAY_PARAM_INT, "samples", "65536", 1, 1e9, NULL,
+     "Where target_error gives up, with a warning; not below spp.", ""},
     {"gradients", ASSAY_PARAM_BOOL, "", "on", 0, 0, NULL,
      "Probes: gradients of irradiance by finite differences with common random numbers.", ""},
     {"gradient_step", ASSAY_PARAM_REAL, "m", "0", 0, 1e9, NULL,
@@ -64,6 +65,13 @@ static assay_status prepare(void *state, const assay_frame *frame)
         return assay_fail(frame->context, ASSAY_ERR_ARGUMENT,
                           "parameter 'target_error' is the error of an image: probes take spp "
                           "samples");
+    }
+    if (path->target_error > 0.0 && frame->camera && path->spp > path->max_spp) {
+        return assay_fail(
+            frame->context, ASSAY_ERR_ARGUMENT,
+            "parameter 'spp' is %u, but 'max_spp' lets target_error take no more than "
+            "%u samples a pixel",
+            path->spp, path->max_spp);
     }
     return ASSAY_OK;
 }

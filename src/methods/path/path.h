@@ -11,6 +11,10 @@ extern const assay_method assay_method_path;
  * work (a tile, a point) long against starting threads and short for who waits for cancelling. */
 enum { ASSAY_PATH_PIXEL_PASS = 64, ASSAY_PATH_POINT_PASS = 4096 };
 
+/* target_error decides on no fewer samples than these of each pixel, and of the image: few samples
+ * of rare light do not know their variance (docs/methods/path.md). */
+enum { ASSAY_PATH_DECIDE_PIXEL = 64, ASSAY_PATH_DECIDE_IMAGE = 4096 };
+
 /* The parameters, read. */
 typedef struct {
     assay_context      *context;
