@@ -62,7 +62,7 @@ static void stats_of_an_image(void **state)
     assert_true(number(stats, "spp_min") == 3 && number(stats, "spp_max") == 3);
     assert_true(number(stats, "threads") == 2);
     assert_true(number(stats, "relative_error") > 0.0);
-    assert_true(cJSON_IsNull(member(stats, "target_reached")));
+    assert_true(cJSON_IsNull(json_member(stats, "target_reached")));
     assert_string_equal(text(stats, "params/spp"), "3");
     assert_string_equal(text(stats, "params/bounces"), "4");
     cJSON *scene = run_json(0, "scene " BOX " --json");
@@ -123,7 +123,7 @@ static void stats_of_points(void **state)
         run_json(0, "render " BOX " --spp 3 --points %s -o /dev/null --stats -", folder.path);
     check_stats(stats);
     assert_true(number(stats, "rays/camera") == 0.0);
-    assert_true(cJSON_IsNull(member(stats, "relative_error")));
+    assert_true(cJSON_IsNull(json_member(stats, "relative_error")));
     cJSON_Delete(stats);
     assay_array_destroy(points);
     assay_context_destroy(context);
@@ -137,20 +137,20 @@ static void target_error(void **state)
     const char *command =
         "render " BOX " --size 16x16 --spp 4 --target-error %s --max-spp %d -o /dev/null --stats -";
     cJSON *reached = run_json(0, command, "0.1", 1000000);
-    assert_true(cJSON_IsTrue(member(reached, "target_reached")));
+    assert_true(cJSON_IsTrue(json_member(reached, "target_reached")));
     assert_true(number(reached, "relative_error") < 0.1);
     assert_true(number(reached, "spp_min") > 4 && number(reached, "spp_max") < 1000000);
     /* Half of the samples cannot have done: a round at most doubles them. */
     assert_true(number(reached, "relative_error") > 0.1 / 2.0);
     cJSON *given_up = run_json(0, command, "0.001", 19);
-    assert_true(cJSON_IsFalse(member(given_up, "target_reached")));
+    assert_true(cJSON_IsFalse(json_member(given_up, "target_reached")));
     assert_true(number(given_up, "relative_error") > 0.001);
     assert_true(number(given_up, "spp_min") == 19 && number(given_up, "spp_max") == 19);
     cJSON *off = run_json(0, command, "0", 19);
     assert_true(number(off, "spp_max") == 4);
     /* One sample knows no error: no number is better than 0. */
     cJSON *one = run_json(0, "render " BOX " --size 4x4 --spp 1 -o /dev/null --stats -");
-    assert_true(cJSON_IsNull(member(one, "relative_error")));
+    assert_true(cJSON_IsNull(json_member(one, "relative_error")));
     cJSON_Delete(reached);
     cJSON_Delete(given_up);
     cJSON_Delete(off);
