@@ -12,6 +12,7 @@ const own_scene *own_scene_list(void)
         {"two-plates", make_two_plates},
         {"colonnade", make_colonnade},
         {"spheres", make_spheres},
+        {"lobes", make_lobes},
         {"animated", make_animated},
     };
     return scenes;

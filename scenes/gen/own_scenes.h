@@ -11,7 +11,7 @@ typedef struct {
     gltf_document *(*make)(void);
 } own_scene;
 
-#define OWN_SCENE_COUNT 9
+#define OWN_SCENE_COUNT 10
 
 /* In the order of scenes/README.md. */
 const own_scene *own_scene_list(void);
@@ -24,6 +24,7 @@ gltf_document *make_rectangle_over_plane(void);
 gltf_document *make_two_plates(void);
 gltf_document *make_colonnade(void);
 gltf_document *make_spheres(void);
+gltf_document *make_lobes(void);
 gltf_document *make_animated(void);
 
 #endif

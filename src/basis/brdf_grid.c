@@ -10,7 +10,9 @@
  * those are filled with the direction on the horizon that is nearest.
  *
  * Invariant: texel (column, row) belongs to u = (column + 1/2) / side, v = (row + 1/2) / side.  The
- * functions' values are the same for every texel and computed once. */
+ * functions' values are the same for every texel and computed once.  Integrals run over the
+ * hemisphere for SH, too: below the horizon a BRDF is 0, and its edge would spoil a rule that does
+ * not know of it. */
 #include "basis/analysis.h"
 #include "basis/projection.h"
 #include "basis/sphere_rule.h"
@@ -76,7 +78,7 @@ static assay_status fill_texel(const grid_maker *maker, assay_vec3 wo, size_t co
     for (int i = 0; i < rule->rings; i++) {
         for (int j = 0; j < rule->sectors; j++, row += count) {
             const assay_vec3   wi     = assay_sphere_rule_direction(rule, i, j);
-            const double       value  = wi.z < 0.0 ? 0.0 : maker->f(maker->user, wo, wi);
+            const double       value  = maker->f(maker->user, wo, wi);
             const assay_status status = assay_projection_check(maker->context, &value, 1, wi);
             if (status != ASSAY_OK) {
                 return status;
@@ -107,9 +109,8 @@ static assay_status fill_grid(grid_maker *maker, assay_brdf_grid *grid)
 static assay_status prepare(grid_maker *maker, assay_brdf_grid *grid, int theta_nodes,
                             int phi_nodes)
 {
-    const bool   hemisphere = assay_basis_kind_is_hemispherical(assay_basis_kind_of(maker->basis));
     assay_status status =
-        assay_sphere_rule_create(maker->context, hemisphere, theta_nodes, phi_nodes, &maker->rule);
+        assay_sphere_rule_create(maker->context, true, theta_nodes, phi_nodes, &maker->rule);
     if (status == ASSAY_OK) {
         status = assay_analysis_create(maker->context, maker->basis, true, &maker->analysis);
     }

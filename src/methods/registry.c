@@ -3,10 +3,12 @@
 
 #include <string.h>
 
+#include "methods/hsh_environment/hsh_environment.h"
 #include "methods/path/path.h"
 
 static const assay_method *const METHODS[] = {
     &assay_method_path,
+    &assay_method_hsh_environment,
 };
 
 enum { METHOD_COUNT = sizeof METHODS / sizeof METHODS[0] };

@@ -230,3 +230,27 @@ double assay_environment_pdf(const assay_environment *e, assay_vec3 direction)
 }
 
 assay_rgb assay_environment_integral(const assay_environment *e) { return e->integral; }
+
+assay_status assay_environment_image(const assay_environment *environment, assay_image **image_out)
+{
+    static const char *const names[3] = {"R", "G", "B"};
+    const assay_environment *e        = environment;
+    const size_t             count    = (size_t)e->width * e->height;
+    assay_image             *image    = NULL;
+    assay_status status = assay_image_create(e->context, (int)e->width, (int)e->height, &image);
+    for (size_t c = 0; c < 3 && status == ASSAY_OK; c++) {
+        assay_channel channel;
+        status = assay_image_add_channel(image, names[c], ASSAY_CHANNEL_FLOAT, &channel);
+        for (size_t i = 0; i < count && status == ASSAY_OK; i++) {
+            channel.data.f32[i] = e->texels[3 * i + c];
+        }
+    }
+    if (status != ASSAY_OK) {
+        assay_image_destroy(image);
+        return status;
+    }
+    *image_out = image;
+    return ASSAY_OK;
+}
+
+double assay_environment_scale(const assay_environment *environment) { return environment->scale; }

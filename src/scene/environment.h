@@ -21,6 +21,12 @@ assay_status assay_environment_create(assay_context *context, const struct assay
                                       assay_environment **environment_out);
 void         assay_environment_destroy(assay_environment *environment);
 
+/* The map as an image again: R, G, B, unscaled, unturned.  Errors: MEMORY. */
+assay_status assay_environment_image(const assay_environment *environment,
+                                     struct assay_image     **image_out);
+/* What its radiance is multiplied with. */
+double assay_environment_scale(const assay_environment *environment);
+
 /* Radiance from a unit direction, W/(m2 sr). */
 assay_rgb assay_environment_radiance(const assay_environment *environment, assay_vec3 direction);
 

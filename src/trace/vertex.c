@@ -16,20 +16,17 @@ static assay_bsdf_model model_of(const assay_material *material)
     return ASSAY_BSDF_METALLIC_ROUGHNESS;
 }
 
-static assay_bsdf bsdf_at(const assay_scene *scene, const assay_surface *surface)
+assay_bsdf assay_vertex_bsdf(const assay_material *material, const assay_surface_material *at)
 {
-    const assay_material  *material = &scene->materials[surface->material];
-    assay_surface_material at;
-    assay_surface_material_at(scene, surface, &at);
     assay_bsdf bsdf = {
         .model           = model_of(material),
-        .base_color      = at.base_color,
-        .metallic        = at.metallic,
-        .roughness       = at.roughness,
+        .base_color      = at->base_color,
+        .metallic        = at->metallic,
+        .roughness       = at->roughness,
         .ior             = material->ior,
-        .specular_factor = at.specular_factor,
-        .specular_color  = at.specular_color,
-        .transmission    = at.transmission,
+        .specular_factor = at->specular_factor,
+        .specular_color  = at->specular_color,
+        .transmission    = at->transmission,
         .solid           = material->solid,
         .exponent        = material->exponent,
         .alpha_x         = material->alpha_x,
@@ -69,7 +66,9 @@ void assay_vertex_place(const assay_world *world, const assay_hit *hit, assay_ve
 void assay_vertex_dress(const assay_world *world, assay_vertex *vertex)
 {
     if (!vertex->dressed) {
-        vertex->bsdf    = bsdf_at(world->scene, &vertex->surface);
+        assay_surface_material at;
+        assay_surface_material_at(world->scene, &vertex->surface, &at);
+        vertex->bsdf = assay_vertex_bsdf(&world->scene->materials[vertex->surface.material], &at);
         vertex->dressed = true;
     }
 }

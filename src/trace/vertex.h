@@ -24,6 +24,9 @@ void assay_vertex_place(const assay_world *world, const assay_hit *hit, assay_ve
 /* Looks up the BSDF, unless that is done. */
 void assay_vertex_dress(const assay_world *world, assay_vertex *vertex);
 
+/* The BSDF of a material whose values at a point are these. */
+assay_bsdf assay_vertex_bsdf(const assay_material *material, const assay_surface_material *at);
+
 /* A vertex that measures irradiance at a point facing frame->z: a Lambertian whose BSDF is 1, so
  * that what it reflects is the integral of radiance times cosine. ng: unit geometric normal on the
  * same side, under which nothing arrives. */

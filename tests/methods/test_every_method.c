@@ -16,12 +16,15 @@
 #include "support/measure.h"
 #include "support/scene_builder.h"
 
+/* The sky is as bright as the inside, for methods that see it through walls. */
 static assay_scene *furnace(assay_context *context)
 {
-    scene_builder *b = scene_builder_create();
+    assay_scene_options options = assay_scene_options_default();
+    scene_builder      *b       = scene_builder_create();
+    options.background          = rgb_grey(2.0);
     scene_builder_sphere(b, scene_builder_diffuse(b, 0.5, 1.0, true), vec3(0, 0, 0), 1.0, 1);
     scene_builder_camera(b, vec3(0.3, 0.2, 0.1), vec3(-1, 0, 0), 1.2);
-    return scene_builder_load(b, context, NULL);
+    return scene_builder_load(b, context, &options);
 }
 
 static const assay_param_desc *find(const char *method, const char *name)

@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "methods/path/path.h"
 #include "trace/camera_ray.h"
+#include "trace/visible_point.h"
 
 enum { TILE = 16 };
 
@@ -43,39 +44,6 @@ static assay_status add_radiance(const render_pass *pass, int x, int y, uint64_t
         }
     }
     return ASSAY_OK;
-}
-
-/* The visible point behind the pixel's centre, as a vertex; false where the ray leaves the scene.
- */
-static bool find_visible(const assay_frame *frame, int x, int y, assay_ray_counts *counts,
-                         assay_vertex *vertex_out)
-{
-    assay_vec3 origin, direction;
-    assay_hit  hit;
-    assay_camera_ray(frame->camera, x + 0.5, y + 0.5, frame->width, frame->height, &origin,
-                     &direction);
-    if (!assay_world_visible(frame->world, origin, direction, &counts->camera, &hit)) {
-        return false;
-    }
-    assay_vertex_place(frame->world, &hit, direction, vertex_out);
-    assay_vertex_dress(frame->world, vertex_out);
-    return true;
-}
-
-static assay_visible_point describe(const assay_frame *frame, const assay_vertex *vertex)
-{
-    const double side = vertex->front ? 1.0 : -1.0;
-    return (assay_visible_point){
-        .hit       = true,
-        .albedo    = assay_bsdf_albedo(&vertex->bsdf),
-        .position  = vertex->surface.position,
-        .ng        = vec3_scale(vertex->surface.ng, side),
-        .ns        = vec3_scale(vertex->surface.ns, side),
-        .z         = assay_camera_depth(frame->camera, vertex->surface.position),
-        .uv        = {vertex->surface.uv[0][0], vertex->surface.uv[0][1]},
-        .material  = vertex->surface.material,
-        .primitive = vertex->surface.triangle,
-    };
 }
 
 static assay_status add_irradiance(const render_pass *pass, const assay_vertex *visible,
@@ -113,10 +81,11 @@ static assay_status render_pixel(const render_pass *pass, int x, int y, assay_ra
     if (status != ASSAY_OK || !(first || (frame->layers & ASSAY_LAYERS_IRRADIANCE))) {
         return status;
     }
-    assay_visible_point point = {.material = UINT32_MAX, .primitive = UINT32_MAX};
+    assay_visible_point point = assay_visible_nothing();
     assay_vertex        visible;
-    if (find_visible(frame, x, y, counts, &visible)) {
-        point = describe(frame, &visible);
+    if (assay_visible_find(frame->world, frame->camera, frame->width, frame->height, x, y, counts,
+                           &visible)) {
+        point = assay_visible_describe(frame->camera, &visible);
         if (frame->layers & ASSAY_LAYERS_IRRADIANCE) {
             status = add_irradiance(pass, &visible, pixel, counts);
         }
