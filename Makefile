@@ -190,14 +190,20 @@ layers: ## check that every include follows src/layers.txt
 format: ## format all sources
 	clang-format -i $(OURS)
 
+ONLY_FINDINGS := awk '/warnings? generated|Suppressed|Use -header-filter/ { next } \
+                        { print; bad = 1 } END { exit bad }'
+CPPCHECK := cppcheck --quiet --error-exitcode=1 --enable=warning,performance,portability \
+            --inline-suppr --suppress=missingIncludeSystem -Iinclude -Isrc -Itests \
+            -DASSAY_VERSION='"x"'
+
 lint: layers ## clang-format, clang-tidy, cppcheck: all clean
 	@$(call install_missing,$(DEPS_LINT))
 	clang-format --dry-run -Werror $(OURS)
-	clang-tidy --quiet $(LIB_C) $(CLI_C) -- $(CPPFLAGS) -std=c11 -fopenmp 2>&1 | \
-	  awk '/warnings? generated|Suppressed|Use -header-filter/ { next } { print; bad = 1 } END { exit bad }'
-	cppcheck --quiet --error-exitcode=1 --std=c11 --enable=warning,performance,portability \
-	  --inline-suppr --suppress=missingIncludeSystem -Iinclude -Isrc -DASSAY_VERSION='"x"' \
-	  $(LIB_C) $(CLI_C)
+	clang-tidy --quiet $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) -- $(CPPFLAGS) -std=c11 -fopenmp \
+	  2>&1 | $(ONLY_FINDINGS)
+	clang-tidy --quiet $(LIB_CXX) -- $(CPPFLAGS) -std=c++17 2>&1 | $(ONLY_FINDINGS)
+	$(CPPCHECK) --std=c11 $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) $(TEST_C) $(BENCH_C)
+	$(CPPCHECK) --std=c++17 --suppress=passedByValue $(LIB_CXX)
 
 # ---- installing ----
 install: all $(BUILD)/libassay.so ## install to $(DESTDIR)$(PREFIX)

@@ -60,7 +60,7 @@ typedef struct {
     int    bays, segments;
     double bay, radius, margin, springing, top, thickness; /* m */
 } arcade_shape;
-void mesh_arcade(solid_mesh *mesh, const arcade_shape *shape);
+void mesh_arcade(solid_mesh *mesh, const arcade_shape *a);
 
 /* A convex profile (u: radius, v: outwards, towards -z; counter-clockwise in (u, v)) drawn along
  * the upper half circle about (0, 0, z0), which it leaves straight downwards by a foot at each end.

@@ -249,7 +249,7 @@ static void refused_memory_is_reported(void **state)
 {
     temporary t = temporary_create();
     (void)state;
-    assert_int_equal(failing_each(write_and_read, (void *)temporary_path(&t, "a.npy")), 9);
+    assert_int_equal(failing_each(write_and_read, (void *)temporary_path(&t, "a.npy")), 10);
     temporary_destroy(&t);
 }
 

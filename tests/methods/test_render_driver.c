@@ -246,8 +246,8 @@ static void metadata(void **state)
     }
     assert_string_equal(attribute(image, "assay:path.spp"), "3");
     assert_string_equal(attribute(image, "assay:path.estimator"), "nee");
-    /* version, method, seed, 8 of the scene, camera, four vectors, yfov: and nothing that is not the
-     * same on every machine. */
+    /* version, method, seed, 8 of the scene, camera, four vectors, yfov: and nothing that is not
+     * the same on every machine. */
     assert_int_equal(assay_image_attribute_count(image), 17 + params);
     assay_image_destroy(image);
     close_bench(&b);

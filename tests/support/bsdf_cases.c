@@ -5,7 +5,7 @@
 #include "core/numerics.h"
 
 /* Rows that have nothing to say about a parameter leave it 0; see bsdf_case_at. */
-typedef struct {
+typedef struct { /* ordered for the reader NOLINT(clang-analyzer-optin.performance.Padding) */
     const char      *name;
     assay_bsdf_model model;
     double           metallic, roughness, ior, specular_factor, transmission;

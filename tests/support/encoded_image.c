@@ -55,10 +55,10 @@ static void set_colors(png_structp png, png_infop info, const png_spec *spec)
         png_set_tRNS(png, info, NULL, 0, &color);
     }
     if (spec->with_gamma) {
-        png_text text = {.compression = PNG_TEXT_COMPRESSION_zTXt, .key = "k", .text = "some text"};
+        png_text note = {.compression = PNG_TEXT_COMPRESSION_zTXt, .key = "k", .text = "some text"};
         png_set_gAMA(png, info, 1.0);
         png_set_cHRM(png, info, 0.3, 0.3, 0.7, 0.2, 0.2, 0.7, 0.1, 0.1);
-        png_set_text(png, info, &text, 1);
+        png_set_text(png, info, &note, 1);
     }
 }
 

@@ -15,7 +15,7 @@ void        gltf_maker_destroy(gltf_maker *maker);
 
 /* Puts an object, given by its inside ("\"mesh\":0"), at the end of an array of the root ("nodes").
  * Returns its index. */
-int gltf_add(gltf_maker *maker, const char *array, const char *format, ...)
+int gltf_add(gltf_maker *maker, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 /* A member of the root: "\"scene\":0". */

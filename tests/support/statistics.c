@@ -19,8 +19,8 @@ enum { NODES = 4, DEPTH = 9 };
 static double gamma_p_series(double a, double x)
 {
     double term = 1.0 / a, sum = term;
-    for (double n = a + 1.0; term > sum * 1e-17; n += 1.0) {
-        term *= x / n;
+    for (int n = 1; term > sum * 1e-17; n++) {
+        term *= x / (a + n);
         sum += term;
     }
     return sum;
