@@ -80,9 +80,11 @@ ASSAY_API assay_status assay_render(assay_scene *scene, const char *method,
                                     assay_image **image_out, assay_render_stats *stats_out);
 
 /* Irradiance at points.  points: rows of x y z nx ny nz (m; normals are normalised).  The result
- * has a row a point; its columns are named by assay_probe_column_name. Gradients are central
- * differences with common random numbers. Errors: ARGUMENT (columns other than 6, a zero normal),
- * DOMAIN (not finite), UNSUPPORTED (the method has no probes), MEMORY, CANCELLED. */
+ * has a row a point; its columns are named by assay_probe_column_name. Gradients are
+ * differences with common random numbers, central but along the normal, where they are one-sided
+ * (docs/methods/path.md; a warning where steps are too short for their variances). Errors: ARGUMENT
+ * (columns other than 6, a zero normal), DOMAIN (not finite), UNSUPPORTED (the method has no
+ * probes), MEMORY, CANCELLED. */
 ASSAY_API assay_status assay_render_probes(assay_scene *scene, const char *method,
                                            const assay_params *params, uint64_t seed,
                                            const assay_array *points, assay_array **result_out,

@@ -9,6 +9,8 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "scene/gltf_topology.h"
+#include "scene/surface.h"
+#include "scene/tangent_space.h"
 
 /* One primitive while it is read. */
 typedef struct {
@@ -258,6 +260,16 @@ static assay_status read_attributes(reading *r)
     return status == ASSAY_OK ? read_targets(r) : status;
 }
 
+/* Only where they are looked at: they may double vertices. */
+static assay_status make_tangents(const reading *r)
+{
+    const assay_material *material = &r->loader->scene->materials[r->to->material];
+    if (!assay_material_wants_tangent(material)) {
+        return ASSAY_OK;
+    }
+    return assay_primitive_make_tangents(r->loader->context, r->to, &material->normal_texture);
+}
+
 static assay_status load_primitive(assay_gltf_loader *loader, uint32_t mesh, uint32_t primitive,
                                    const assay_gltf_primitive *from, assay_primitive *to)
 {
@@ -288,6 +300,7 @@ static assay_status load_primitive(assay_gltf_loader *loader, uint32_t mesh, uin
     assay_release(loader->context, r.topology.chosen);
     if (status == ASSAY_OK) {
         warn_of_missing_texcoords(&r);
+        status = make_tangents(&r);
     }
     return status;
 }

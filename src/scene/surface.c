@@ -5,9 +5,8 @@
  * normal map) is bent back just that far, in the plane that it spans with ng.  Where all three
  * vertex normals look to the back, the file has them inverted, and they are turned round.
  *
- * Departure: where a normal-mapped mesh has no tangents, glTF asks for MikkTSpace; here the tangent
- * of the triangle's own texture coordinates is taken, constant over a triangle.  Where these do not
- * span a plane, the normal map is left out. */
+ * Where a mesh brings no tangents, the loader has made them (tangent_space.h).  Where they vanish,
+ * because texture coordinates do not span a plane, the normal map is left out. */
 #include "scene/surface.h"
 
 #include "scene/surface_material.h"
@@ -104,41 +103,14 @@ static assay_vec3 shading_normal(const assay_shape *shape, const corners *c, ass
     return keep_on_side(n, ng);
 }
 
-/* Direction of growing u on the triangle, and the sign of the bitangent (which points to where v
- * falls: up in the image).  False where the coordinates do not span a plane. */
-static bool tangent_of_uv(const assay_primitive *primitive, const corners *c,
-                          const assay_texture_ref *ref, assay_vec3 *tangent_out, double *sign_out)
+/* Unit tangent and bitangent sign. */
+static bool find_tangent(const assay_shape *shape, const corners *c, assay_vec3 *tangent_out,
+                         double *sign_out)
 {
-    const float *uv = primitive->uv[ref->texcoord & 1u];
-    double       s[3], t[3];
-    if (!uv) {
-        return false;
-    }
-    for (int i = 0; i < 3; i++) {
-        const float *p = uv + (size_t)c->vertex[i] * 2;
-        s[i]           = ref->uv_matrix[0][0] * p[0] + ref->uv_matrix[0][1] * p[1];
-        t[i]           = ref->uv_matrix[1][0] * p[0] + ref->uv_matrix[1][1] * p[1];
-    }
-    const double     s1 = s[1] - s[0], s2 = s[2] - s[0], t1 = t[1] - t[0], t2 = t[2] - t[0];
-    const double     determinant = s1 * t2 - s2 * t1;
-    const assay_vec3 direction   = vec3_sub(vec3_scale(c->e1, t2), vec3_scale(c->e2, t1));
-    const double     length      = vec3_length(direction);
-    if (!isfinite(determinant) || determinant == 0.0 || !isfinite(length) || length == 0.0) {
-        return false;
-    }
-    *tangent_out = vec3_scale(direction, copysign(1.0, determinant) / length);
-    *sign_out    = determinant < 0.0 ? 1.0 : -1.0;
-    return true;
-}
-
-/* Unit tangent and bitangent sign, from the vertices or else from texture coordinates. */
-static bool find_tangent(const assay_shape *shape, const corners *c, const assay_texture_ref *ref,
-                         assay_vec3 *tangent_out, double *sign_out)
-{
-    if (!shape->tangents) {
-        return tangent_of_uv(shape->primitive, c, ref, tangent_out, sign_out);
-    }
     double sum[4];
+    if (!shape->tangents) {
+        return false;
+    }
     interpolate(c, shape->tangents, 4, sum);
     const assay_vec3 t      = vec3(sum[0], sum[1], sum[2]);
     const double     length = vec3_length(t);
@@ -167,7 +139,7 @@ static assay_vec3 mapped_normal(const assay_scene *scene, const assay_material *
     return length > 1e-6 ? vec3_scale(world, 1.0 / length) : surface->ns;
 }
 
-static bool wants_tangent(const assay_material *material)
+bool assay_material_wants_tangent(const assay_material *material)
 {
     return material->normal_texture.texture != ASSAY_NONE ||
            material->model == ASSAY_MATERIAL_WARD ||
@@ -180,8 +152,7 @@ static void orient(const assay_scene *scene, const corners *c, assay_surface *s)
     const assay_material *material = &scene->materials[s->material];
     assay_vec3            tangent;
     double                sign = 1.0;
-    if (!wants_tangent(material) ||
-        !find_tangent(shape, c, &material->normal_texture, &tangent, &sign)) {
+    if (!assay_material_wants_tangent(material) || !find_tangent(shape, c, &tangent, &sign)) {
         s->frame = frame3_from_z(s->ns);
         return;
     }

@@ -51,6 +51,9 @@ assay_rgb assay_surface_emission(const assay_scene *scene, const assay_surface *
  */
 bool assay_material_emits(const assay_material *material);
 
+/* Whether a material's frame must follow tangents: a normal map, or an anisotropic lobe. */
+bool assay_material_wants_tangent(const assay_material *material);
+
 /* A material's values at a point, all textures looked up; each in [0, 1]. */
 typedef struct {
     assay_rgb base_color;

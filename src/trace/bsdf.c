@@ -128,9 +128,6 @@ bool assay_bsdf_is_specular(const assay_bsdf *bsdf)
 
 assay_rgb assay_bsdf_albedo(const assay_bsdf *bsdf)
 {
-    if (bsdf->model == ASSAY_BSDF_BLACK) {
-        return rgb_grey(0.0);
-    }
     return adds_specular(bsdf->model) ? rgb_add(bsdf->base_color, bsdf->specular_color)
                                       : bsdf->base_color;
 }

@@ -71,8 +71,8 @@ bool assay_bsdf_sample_direction(const assay_bsdf *bsdf, assay_vec3 wo, double u
 /* True where no lobe can be evaluated (all specular): light sampling is then of no use. */
 bool assay_bsdf_is_specular(const assay_bsdf *bsdf);
 
-/* The reflectance that a G-buffer calls albedo: base colour (diffuse, metal or tint) + specular
- * colour for Phong and Ward. */
+/* The reflectance that a G-buffer calls albedo: base colour (diffuse, metal or tint; of unlit
+ * surfaces, too, though they scatter nothing) + specular colour for Phong and Ward. */
 assay_rgb assay_bsdf_albedo(const assay_bsdf *bsdf);
 
 #endif

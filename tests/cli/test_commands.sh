@@ -363,9 +363,16 @@ refuses "frames so slow that their time is no number" 2 "time" render $moving $s
 
 # ---- points ----
 write_npy "$folder/points.npy" "2, 6" 0 h 0 0 1 0 0 h 0 0 0 1
-accepts "--points" render $box --spp 2 --points "$folder/points.npy" -o "$folder/r.npy"
+accepts "--points" render $box --spp 2 --points "$folder/points.npy" -o "$folder/r.npy" \
+    --gradient-step 0.5 --gradient-angle 0.5
 [ "$(wc -c < "$folder/r.npy")" -ge $((2 * 54 * 8 + 64)) ]
 result $? "--points: 2 rows of 54 columns"
+run render $box --spp 2 --points "$folder/points.npy" -o "$folder/r.npy"
+[ "$code" -eq 0 ] && grep -q 'warning: gradients: .*gradients=off' "$folder/stderr"
+result $? "--points: steps too short for the samples are said"
+run render $box --size 4x4 --spp 2 --target-error 1e-6 --max-spp 9 -o "$folder/t.exr"
+[ "$code" -eq 0 ] && grep -q 'warning: target_error' "$folder/stderr"
+result $? "--target-error: not reached is said"
 accepts "--points, gradients off" render $box --spp 2 --points "$folder/points.npy" \
     --gradients off -o "$folder/r.npy" --stats "$folder/r.json"
 [ "$(wc -c < "$folder/r.npy")" -lt $((2 * 54 * 8)) ]

@@ -132,7 +132,9 @@ static assay_scene *three_quads(assay_context *context)
     gltf_maker        *m          = gltf_maker_create();
     gltf_add(m, "materials", "\"name\":\"of nothing\"");
     gltf_add(m, "materials", "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.2,0.4,0.6,1]}");
-    gltf_add(m, "materials", "\"doubleSided\":true");
+    gltf_add(m, "materials",
+             "\"doubleSided\":true,\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.3,0.5,0.7,1]},"
+             "\"extensions\":{\"KHR_materials_unlit\":{}}");
     add_quad(m, tilted, SHADE, 1);
     add_quad(m, behind, BEHIND, 2);
     add_quad(m, culled, NULL, 1);
@@ -183,7 +185,7 @@ static expected_point expect(int i, int j, int width, int height, double within)
         /* Across the diagonal from (-2, 2) to (2, 1.25). */
         const bool first = by > 1.625 - 0.1875 * bx;
         e                = (expected_point){.p         = {bx, by, 0.0},
-                                            .albedo    = {1.0, 1.0, 1.0},
+                                            .albedo    = {0.3, 0.5, 0.7}, /* though unlit */
                                             .uv        = {(bx + 2.0) / 4.0, (by - 1.25) / 0.75},
                                             .z         = EYE[2],
                                             .material  = 2,

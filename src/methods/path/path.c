@@ -23,11 +23,17 @@ static const assay_param_desc PARAMS[] = {
     {"max_spp", ASSAY_PARAM_INT, "samples", "65536", 1, 1e9, NULL,
      "Where target_error gives up, with a warning; not below spp.", ""},
     {"gradients", ASSAY_PARAM_BOOL, "", "on", 0, 0, NULL,
-     "Probes: gradients of irradiance by finite differences with common random numbers.", ""},
+     "Probes: gradients of irradiance by finite differences with common random numbers; their "
+     "paths "
+     "find lights by light sampling, whatever the estimator.",
+     ""},
     {"gradient_step", ASSAY_PARAM_REAL, "m", "0", 0, 1e9, NULL,
-     "Probes: half the distance of the difference; 0 is a thousandth of the scene's diagonal.", ""},
-    {"gradient_angle", ASSAY_PARAM_REAL, "rad", "0.001", 1e-9, 0.5, NULL,
-     "Probes: half the angle of the rotational difference.", ""},
+     "Probes: half the distance of the difference; 0 is a thousandth of the scene's diagonal. "
+     "Times "
+     "spp it should be the diagonal at least.",
+     ""},
+    {"gradient_angle", ASSAY_PARAM_REAL, "rad", "0.001", 1e-6, 0.5, NULL,
+     "Probes: half the angle of the rotational difference. Times spp it should be 1 at least.", ""},
     {0},
 };
 

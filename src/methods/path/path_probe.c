@@ -4,6 +4,12 @@
  * noise cancels and the gradient's variance can be measured like any other.  Along the normal the
  * difference is one-sided: behind a point on a surface there is no irradiance to compare with.
  *
+ * Paths of a difference find lights by light sampling alone, at every vertex.  What it finds moves
+ * smoothly with the point, while a scattered ray that just hits a light from one side and just
+ * misses it from the other makes a difference of size 1 / step with a probability of the order of
+ * the step: right in the mean, but seen in so few samples that their variance says nothing.
+ * Perfectly specular lobes have no choice and keep such events.
+ *
  * Invariant: between passes the result's rows hold means and sums of squared deviations. */
 #include "core/alloc.h"
 #include "core/context.h"
@@ -28,7 +34,8 @@ typedef struct {
     const assay_probe_points *points;
     double                   *rows;
     assay_ray_counts         *worker_counts;
-    double                    step; /* m */
+    assay_path_settings       smooth; /* of the paths of differences */
+    double                    step;   /* m                           */
     uint32_t                  quantities;
     uint32_t                  first, count; /* samples of this pass */
 } probe_job;
@@ -44,14 +51,14 @@ static void add_sample(double sums[6], double count, assay_rgb value)
     }
 }
 
-static assay_path_light measure(const probe_job *job, uint64_t index, uint32_t sample,
-                                assay_vec3 position, const assay_frame3 *frame,
-                                assay_ray_counts *counts)
+static assay_path_light measure(const probe_job *job, const assay_path_settings *settings,
+                                uint64_t index, uint32_t sample, assay_vec3 position,
+                                const assay_frame3 *frame, assay_ray_counts *counts)
 {
     assay_vertex receiver;
     assay_vertex_receiver(position, frame, frame->z, &receiver);
     assay_random random = assay_random_start(job->frame->seed, ASSAY_STAGE_PROBE, index, sample);
-    return assay_path_scatter(job->frame->world, &job->state->settings, &receiver, &random, counts);
+    return assay_path_scatter(job->frame->world, settings, &receiver, &random, counts);
 }
 
 static assay_rgb total(assay_path_light light) { return rgb_add(light.direct, light.indirect); }
@@ -92,26 +99,31 @@ static void measure_gradients(const probe_job *job, uint64_t index, uint32_t sam
                               const assay_frame3 *frame, assay_path_light here,
                               assay_ray_counts *counts, assay_rgb out[6])
 {
-    const assay_vec3 p       = job->points->positions[index];
-    const double     h       = job->step;
-    const double     angle   = job->state->gradient_angle;
-    const assay_vec3 axis[2] = {frame->x, frame->y};
-    assay_rgb        slope[3], spin[3] = {{0}};
+    const assay_path_settings *smooth  = &job->smooth;
+    const assay_vec3           p       = job->points->positions[index];
+    const double               h       = job->step;
+    const double               angle   = job->state->gradient_angle;
+    const assay_vec3           axis[2] = {frame->x, frame->y};
+    assay_rgb                  slope[3], spin[3] = {{0}};
     for (int i = 0; i < 2; i++) {
         const assay_path_light ahead =
-            measure(job, index, sample, vec3_mad(p, h, axis[i]), frame, counts);
+            measure(job, smooth, index, sample, vec3_mad(p, h, axis[i]), frame, counts);
         const assay_path_light behind =
-            measure(job, index, sample, vec3_mad(p, -h, axis[i]), frame, counts);
+            measure(job, smooth, index, sample, vec3_mad(p, -h, axis[i]), frame, counts);
         slope[i] = difference(ahead, behind, 0.5 / h);
 
         const assay_frame3     left       = turn(frame, axis[i], angle);
         const assay_frame3     right      = turn(frame, axis[i], -angle);
-        const assay_path_light turned     = measure(job, index, sample, p, &left, counts);
-        const assay_path_light turned_off = measure(job, index, sample, p, &right, counts);
+        const assay_path_light turned     = measure(job, smooth, index, sample, p, &left, counts);
+        const assay_path_light turned_off = measure(job, smooth, index, sample, p, &right, counts);
         spin[i]                           = difference(turned, turned_off, 0.5 / angle);
     }
-    slope[2] = difference(measure(job, index, sample, vec3_mad(p, h, frame->z), frame, counts),
-                          here, 1.0 / h);
+    if (job->state->settings.estimator != smooth->estimator) {
+        here = measure(job, smooth, index, sample, p, frame, counts);
+    }
+    const assay_path_light above =
+        measure(job, smooth, index, sample, vec3_mad(p, h, frame->z), frame, counts);
+    slope[2] = difference(above, here, 1.0 / h);
     to_world(frame, slope, out);
     to_world(frame, spin, out + 3);
 }
@@ -123,9 +135,9 @@ static assay_status probe_point(void *user, uint64_t index, int worker)
     const assay_frame3 frame  = frame3_from_z(job->points->normals[index]);
     double            *row    = job->rows + index * job->quantities * 6;
     for (uint32_t s = job->first; s < job->first + job->count; s++) {
-        const assay_path_light here =
-            measure(job, index, s, job->points->positions[index], &frame, counts);
-        assay_rgb value[QUANTITIES] = {total(here), here.direct, here.indirect};
+        const assay_path_light here              = measure(job, &job->state->settings, index, s,
+                                                           job->points->positions[index], &frame, counts);
+        assay_rgb              value[QUANTITIES] = {total(here), here.direct, here.indirect};
         if (job->quantities == QUANTITIES) {
             measure_gradients(job, index, s, &frame, here, counts, value + TRANSLATION);
         }
@@ -167,10 +179,21 @@ static void finish_rows(const probe_job *job)
     }
 }
 
-static double default_step(const assay_scene *scene)
+/* Where a path meets the edge of something with a probability of the order of the step, as many
+ * samples as fill the scene's diagonal (or a radian) with steps meet about one: with fewer, the
+ * variance is that of paths that met none. */
+static void warn_of_short_steps(const probe_job *job, double diagonal)
 {
-    const double diagonal = vec3_length(vec3_sub(scene->bounds_max, scene->bounds_min));
-    return diagonal > 0.0 ? 1e-3 * diagonal : 1e-3;
+    const double samples = job->state->spp;
+    const double angle   = job->state->gradient_angle;
+    if (job->quantities == QUANTITIES && job->points->count > 0 &&
+        (samples * job->step < diagonal || samples * angle < 1.0)) {
+        assay_inform(job->frame->context, ASSAY_LOG_WARNING,
+                     "gradients: %g samples with steps of %g m and %g rad rarely meet the edges of "
+                     "shadows, and their variances may be far too small; take spp * gradient_step "
+                     ">= %.3g m and spp * gradient_angle >= 1, or gradients=off",
+                     samples, job->step, angle, diagonal);
+    }
 }
 
 assay_status assay_path_probe(void *state, const assay_frame *frame,
@@ -178,6 +201,8 @@ assay_status assay_path_probe(void *state, const assay_frame *frame,
                               assay_ray_counts *counts)
 {
     const assay_path_state *path    = state;
+    const assay_scene      *scene   = frame->world->scene;
+    const double            extent  = vec3_length(vec3_sub(scene->bounds_max, scene->bounds_min));
     const int               threads = assay_context_threads(frame->context);
     assay_ray_counts       *worker_counts =
         assay_allocate(frame->context, (size_t)threads, sizeof *worker_counts);
@@ -190,9 +215,14 @@ assay_status assay_path_probe(void *state, const assay_frame *frame,
         .points        = points,
         .rows          = rows,
         .worker_counts = worker_counts,
-        .step = path->gradient_step > 0.0 ? path->gradient_step : default_step(frame->world->scene),
-        .quantities = path->gradients ? QUANTITIES : QUANTITIES_PLAIN,
+        .smooth        = path->settings,
+        .step          = path->gradient_step > 0.0 ? path->gradient_step
+                         : extent > 0.0            ? 1e-3 * extent
+                                                   : 1e-3,
+        .quantities    = path->gradients ? QUANTITIES : QUANTITIES_PLAIN,
     };
+    job.smooth.estimator = ASSAY_ESTIMATOR_NEE;
+    warn_of_short_steps(&job, extent);
     const assay_status status = run_passes(&job);
     for (int i = 0; i < threads; i++) {
         assay_ray_counts_add(counts, &worker_counts[i]);
