@@ -1,7 +1,8 @@
 /* Nanoseconds for all values of a direction, against the textbook: angles by acos and atan2, each
  * function by itself, its Legendre polynomial by the standard recurrence, its normalisation by
- * factorials, its cosine from libm.  Both are timed in turn, and the ratio is the least disturbed
- * of several rounds of each. */
+ * factorials, its cosine from libm.  And for turning coefficients by a rotation matrix, against a
+ * product that does not know of its blocks.  Both are timed in turn, and the ratio is the least
+ * disturbed of several rounds of each. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -107,6 +108,50 @@ static void measure(const assay_basis *basis, const assay_vec3 *directions, doub
            best[WAY_BATCH], best[WAY_TEXTBOOK] / best[WAY_BATCH]);
 }
 
+/* ---- turning coefficients ---- */
+
+static void textbook_rotate(size_t count, const double *matrix, const double *in, double *out)
+{
+    for (size_t i = 0; i < count; i++) {
+        out[i] = 0.0;
+        for (size_t j = 0; j < count; j++) {
+            out[i] += matrix[i * count + j] * in[j];
+        }
+    }
+}
+
+static void measure_rotation(const assay_basis *sh)
+{
+    enum { TURNS = 512 };
+    const size_t count  = assay_basis_count(sh);
+    double      *matrix = calloc(count * count, sizeof *matrix);
+    double      *two    = calloc(2 * count, sizeof *two);
+    double       rotation[9], best[2] = {INFINITY, INFINITY};
+    assay_rotation_from_euler_zyz(0.3, 0.8, -1.1, rotation);
+    if (!matrix || !two || assay_sh_rotation(sh, rotation, matrix) != ASSAY_OK) {
+        exit(EXIT_FAILURE);
+    }
+    two[0] = 1.0;
+    for (int round = 0; round < ROUNDS; round++) {
+        for (int ours = 0; ours < 2; ours++) {
+            const double start = seconds();
+            for (int i = 0; i < TURNS; i++) {
+                double *in = two + (size_t)(i & 1) * count, *out = two + (size_t)(~i & 1) * count;
+                if (!ours) {
+                    textbook_rotate(count, matrix, in, out);
+                } else if (assay_sh_rotate(sh, matrix, 1, in, out) != ASSAY_OK) {
+                    exit(EXIT_FAILURE);
+                }
+            }
+            best[ours] = fmin(best[ours], (seconds() - start) / TURNS);
+        }
+    }
+    printf("turning SH n = %2d   textbook %8.1f ns   ours %8.1f ns   ratio %5.1f\n",
+           assay_basis_order(sh), 1e9 * best[0], 1e9 * best[1], best[0] / best[1]);
+    free(two);
+    free(matrix);
+}
+
 int main(void)
 {
     static const int              orders[ORDERS] = {3, 5, 10, 16};
@@ -131,6 +176,9 @@ int main(void)
                 return EXIT_FAILURE;
             }
             measure(basis, directions, values);
+            if (kinds[kind] == ASSAY_BASIS_SH) {
+                measure_rotation(basis);
+            }
             assay_basis_destroy(basis);
         }
     }
