@@ -15,6 +15,7 @@
 
 #include "core/alloc.h"
 #include "core/context.h"
+#include "io/exr_window.h"
 #include "io/half.h"
 #include "io/image_data.h"
 
@@ -127,47 +128,6 @@ static assay_status check_kind(exr_job *job)
     return ASSAY_OK;
 }
 
-static uint64_t box_extent(int32_t minimum, int32_t maximum)
-{
-    return maximum < minimum ? 0 : (uint64_t)((int64_t)maximum - minimum + 1);
-}
-
-static bool box_too_large(const exr_attr_box2i_t *box)
-{
-    const uint64_t width  = box_extent(box->min.x, box->max.x);
-    const uint64_t height = box_extent(box->min.y, box->max.y);
-    return width > ASSAY_IMAGE_MAX_SIDE || height > ASSAY_IMAGE_MAX_SIDE ||
-           width * height > ASSAY_IMAGE_MAX_PIXELS;
-}
-
-static assay_status check_windows(const exr_job *job)
-{
-    const exr_attr_box2i_t *data = &job->data, *display = &job->display;
-    if (!box_extent(data->min.x, data->max.x) || !box_extent(data->min.y, data->max.y) ||
-        !box_extent(display->min.x, display->max.x) ||
-        !box_extent(display->min.y, display->max.y)) {
-        return assay_fail(job->context, ASSAY_ERR_FORMAT, "%s: the OpenEXR window is empty",
-                          job->name);
-    }
-    if (box_too_large(data) || box_too_large(display)) {
-        return assay_fail(job->context, ASSAY_ERR_LIMIT,
-                          "%s: the OpenEXR window is larger than %d a side or %u pixels in all",
-                          job->name, ASSAY_IMAGE_MAX_SIDE, ASSAY_IMAGE_MAX_PIXELS);
-    }
-    if (data->max.x < display->min.x || data->min.x > display->max.x ||
-        data->max.y < display->min.y || data->min.y > display->max.y) {
-        return assay_fail(job->context, ASSAY_ERR_UNSUPPORTED,
-                          "%s: the OpenEXR data window lies outside the display window", job->name);
-    }
-    if (memcmp(data, display, sizeof *data) != 0) {
-        assay_inform(job->context, ASSAY_LOG_WARNING,
-                     "%s: the OpenEXR data window is not the display window: pixels outside the "
-                     "display window are left out, missing ones are 0",
-                     job->name);
-    }
-    return ASSAY_OK;
-}
-
 static assay_status check_channels(const exr_job *job)
 {
     uint64_t bytes = 0;
@@ -187,8 +147,8 @@ static assay_status check_channels(const exr_job *job)
         }
         bytes += channel->pixel_type == EXR_PIXEL_HALF ? 2 : 4;
     }
-    bytes *=
-        box_extent(job->data.min.x, job->data.max.x) * box_extent(job->data.min.y, job->data.max.y);
+    bytes *= assay_exr_extent(job->data.min.x, job->data.max.x) *
+             assay_exr_extent(job->data.min.y, job->data.max.y);
     /* No compression of these gets beyond 1376 : 1 (PXR24: deflate, and 4 bytes from 3). */
     if (bytes / 2048 > job->count) {
         return assay_fail(job->context, ASSAY_ERR_FORMAT,
@@ -211,7 +171,7 @@ static assay_status read_header(exr_job *job)
     }
     assay_status status = check_kind(job);
     if (status == ASSAY_OK) {
-        status = check_windows(job);
+        status = assay_exr_check_windows(job->context, job->name, &job->data, &job->display);
     }
     return status == ASSAY_OK ? check_channels(job) : status;
 }
@@ -420,8 +380,8 @@ static exr_result_t read_scanlines(exr_job *job, exr_decode_pipeline_t *decode)
 static exr_result_t read_tiles(exr_job *job, exr_decode_pipeline_t *decode)
 {
     int32_t       tile_width = 0, tile_height = 0;
-    const int32_t width  = (int32_t)box_extent(job->data.min.x, job->data.max.x);
-    const int32_t height = (int32_t)box_extent(job->data.min.y, job->data.max.y);
+    const int32_t width  = (int32_t)assay_exr_extent(job->data.min.x, job->data.max.x);
+    const int32_t height = (int32_t)assay_exr_extent(job->data.min.y, job->data.max.y);
     exr_result_t  result = exr_get_tile_sizes(job->exr, 0, 0, 0, &tile_width, &tile_height);
     if (result == EXR_ERR_SUCCESS && (tile_width < 1 || tile_height < 1)) {
         result = EXR_ERR_INVALID_ATTR;
@@ -456,8 +416,8 @@ static assay_status read_image(exr_job *job)
     assay_status status = read_header(job);
     if (status == ASSAY_OK) {
         status = assay_image_create(
-            job->context, (int)box_extent(job->display.min.x, job->display.max.x),
-            (int)box_extent(job->display.min.y, job->display.max.y), &job->image);
+            job->context, (int)assay_exr_extent(job->display.min.x, job->display.max.x),
+            (int)assay_exr_extent(job->display.min.y, job->display.max.y), &job->image);
     }
     if (status == ASSAY_OK) {
         status = make_channels(job);

@@ -77,24 +77,41 @@ static void only_wanted_channels_take_memory(void **state)
     free(bytes);
 }
 
-/* A display window of 16384 x 16384 makes 6 GiB of six channels, and 1 GiB of one. */
+/* A display window of 2048 x 2048 makes 96 MiB of six channels, and 16 MiB of one. */
 static void a_large_window_is_refused(void **state)
 {
     (void)state;
     static const char *const wanted[] = {"Z", NULL};
-    const exr_attr_box2i_t   window   = {.max.x = 16383, .max.y = 16383};
+    const exr_attr_box2i_t   window   = {.max.x = 2047, .max.y = 2047};
     size_t                   count    = 0;
     uint8_t                 *bytes    = file_of(EXR_COMPRESSION_ZIP, window, &count);
-    assay_context           *context  = limited(UINT64_C(100) << 20);
+    assay_context           *context  = limited(UINT64_C(10) << 20);
     assay_image             *image    = NULL;
     assert_int_equal(assay_image_decode(context, bytes, count, "big.exr", NULL, &image),
                      ASSAY_ERR_MEMORY);
-    assert_non_null(strstr(assay_context_error(context), "big.exr: it needs 6 GiB"));
+    assert_non_null(strstr(assay_context_error(context), "big.exr: it needs 96 MiB"));
     assert_int_equal(assay_image_decode(context, bytes, count, "big.exr", wanted, &image),
                      ASSAY_ERR_MEMORY);
-    assert_non_null(strstr(assay_context_error(context), "big.exr: it needs 1 GiB"));
+    assert_non_null(strstr(assay_context_error(context), "big.exr: it needs 16 MiB"));
     assert_null(image);
     assert_int_equal(assay_context_memory_used(context), 0);
+    assay_context_destroy(context);
+    free(bytes);
+}
+
+/* A few pixels of a picture of 4096 x 4096 are refused whatever memory there is. */
+static void a_hollow_window_is_refused(void **state)
+{
+    (void)state;
+    const exr_attr_box2i_t window  = {.max.x = 4095, .max.y = 4095};
+    size_t                 count   = 0;
+    uint8_t               *bytes   = file_of(EXR_COMPRESSION_ZIP, window, &count);
+    assay_context         *context = limited(UINT64_C(1) << 40);
+    assay_image           *image   = NULL;
+    assert_int_equal(assay_image_decode(context, bytes, count, "hollow.exr", NULL, &image),
+                     ASSAY_ERR_LIMIT);
+    assert_non_null(strstr(assay_context_error(context), "hollow.exr: the OpenEXR display window"));
+    assert_null(image);
     assay_context_destroy(context);
     free(bytes);
 }
@@ -129,6 +146,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(only_wanted_channels_take_memory),
         cmocka_unit_test(a_large_window_is_refused),
+        cmocka_unit_test(a_hollow_window_is_refused),
         cmocka_unit_test(another_compression_is_a_broken_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
