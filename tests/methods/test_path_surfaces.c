@@ -334,6 +334,30 @@ static void plate_that_reflects(void **state)
                   4.0 * (through + back), 0.0, 4.0 * ((1 - f) * (1 - f) * a + f));
 }
 
+/* A rough, infinitely thin sheet passes most of the light behind it.  The three estimators must
+ * find the same: light sampling has to look behind it, too.  Sampling the BSDF knows nothing of
+ * lights and is the judge; that light behind the sheet is missed is the mutant. */
+static measured rough_sheet(const char *estimator)
+{
+    const setting settings[] = {{"spp", "1024"}, {"estimator", estimator}, {NULL, NULL}};
+    gltf_maker   *m          = gltf_maker_create();
+    const int     material =
+        gltf_add(m, "materials",
+                 "\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.6},"
+                 "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1}}");
+    add_sheet(m, 0, 50, false, "", material);
+    return see(m, 1.0, settings);
+}
+
+static void sheet_that_scatters(void **state)
+{
+    (void)state;
+    const measured judge = rough_sheet("bsdf");
+    assert_true(judge.value > 0.8 && judge.value <= 1.0);
+    measure_check("nee", rough_sheet("nee"), judge.value, 5.0 * judge.error, 0.5 * judge.value);
+    measure_check("mis", rough_sheet("mis"), judge.value, 5.0 * judge.error, 0.9 * judge.value);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -348,6 +372,7 @@ int main(void)
         cmocka_unit_test(unlit),
         cmocka_unit_test(beer),
         cmocka_unit_test(plate_that_reflects),
+        cmocka_unit_test(sheet_that_scatters),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
