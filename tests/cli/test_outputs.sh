@@ -4,7 +4,7 @@
 # line with exit code 3 (or 2 where the option itself is wrong).  TAP.
 . tests/support/tap.sh
 write_npy "$folder/points.npy" "1, 6" 0 h 0 0 1 0
-probe="render $box --spp 1 --points $folder/points.npy"
+probe="render $box --quiet --spp 1 --points $folder/points.npy"
 plain="render $box $small"
 full="File too large"
 
@@ -127,7 +127,7 @@ limited "preview is larger than the disk" 8 "$full" $big --layers color -o /dev/
     --png "$out/a.png"
 limited "bundle is larger than the disk" 64 "$full" $big -o "$out/a.exr" --dump "$out/bundle"
 write_npy "$folder/many.npy" "100, 6" $(yes 0 h 0 0 1 0 | head -n 100)
-limited "table is larger than the disk" 8 "$full" render $box --spp 1 --points "$folder/many.npy" \
+limited "table is larger than the disk" 8 "$full" render $box --quiet --spp 1 --points "$folder/many.npy" \
     -o "$out/a.npy"
 cp "$folder/a.exr" "$folder/old.exr"
 limited "an image in place of another" 8 "$full" $big -o "$folder/old.exr"
