@@ -40,13 +40,20 @@ static const assay_param_desc *find(const char *method, const char *name)
     return NULL;
 }
 
-/* Defaults, with so many samples where the method knows samples. */
+/* Defaults, with so many samples where the method knows samples, and small where it can be: all of
+ * it is done again for every block of memory that can be refused. */
 static assay_status make_params(assay_context *context, const char *method, const char *spp,
                                 assay_params **params_out)
 {
     const assay_status status = assay_method_params(context, method, params_out);
-    if (status == ASSAY_OK && find(method, "spp")) {
-        assert_int_equal(assay_params_set(*params_out, "spp", spp), ASSAY_OK);
+    const struct {
+        const char *name, *value;
+    } cheap[] = {{"spp", spp}, {"grid", "4"}, {"nodes", "8"}, {"order", "4"}, {"sh_order", "4"}};
+    for (size_t i = 0; i < sizeof cheap / sizeof cheap[0] && status == ASSAY_OK; i++) {
+        if (find(method, cheap[i].name)) {
+            assert_int_equal(assay_params_set(*params_out, cheap[i].name, cheap[i].value),
+                             ASSAY_OK);
+        }
     }
     return status;
 }
@@ -141,8 +148,9 @@ static void check_threads(const char *method)
         assert_true(many.stats.samples == one.stats.samples);
         assert_true(many.stats.relative_error == one.stats.relative_error);
     }
-    /* Mutant: numbers that are not the same. */
-    assert_string_not_equal(render_with_threads(method, 1, 6).digest, one.digest);
+    /* Mutant, where there is noise: numbers that are not the same. */
+    assert_true(one.stats.relative_error == 0.0 ||
+                strcmp(render_with_threads(method, 1, 6).digest, one.digest) != 0);
 }
 
 static void same_bits_for_all_threads(void **state)
