@@ -22,7 +22,7 @@
 #include "trace/camera_ray.h"
 #include "trace/world.h"
 
-enum { SIDE = 128, RAYS = 1 << 17, ROUNDS = 21 };
+enum { SIDE = 128, RAYS = 1 << 17, ROUNDS = 11 };
 
 typedef struct {
     assay_scene   *scene;
@@ -66,7 +66,7 @@ static assay_render_stats render(assay_context *context, assay_scene *scene, con
     options.camera                 = camera;
     options.layers                 = "color";
     if (assay_method_params(context, "path", &params) != ASSAY_OK ||
-        assay_params_set(params, "spp", "4") != ASSAY_OK ||
+        assay_params_set(params, "spp", "16") != ASSAY_OK ||
         assay_render(scene, "path", params, &options, &image, &stats) != ASSAY_OK) {
         stop(assay_context_error(context));
     }
