@@ -182,9 +182,9 @@ typedef struct {
     int table_steps; /* TABLE: intervals over [0, pi / 2], >= 1; 0: 16 */
 } assay_hsh_rotation_options;
 
-/* Matrix with c' = M c; count * count.  |beta| <= pi (DIGON, ANALYTICAL: pi / 2, as eq. 3.30 is
- * undefined beyond; TABLE: pi / 2).  Errors: ARGUMENT (kind other than HSH, options), DOMAIN
- * (beta), MEMORY. */
+/* Matrix with c' = M c; count * count.  options NULL: ASSAY_HSH_EXACT.  |beta| <= pi (DIGON,
+ * ANALYTICAL: pi / 2, as eq. 3.30 is undefined beyond; TABLE: pi / 2).  Errors: ARGUMENT (kind
+ * other than HSH, options), DOMAIN (beta), MEMORY. */
 ASSAY_API assay_status assay_hsh_rotation_y(const assay_basis *hsh, assay_context *context,
                                             const assay_hsh_rotation_options *options, double beta,
                                             double *matrix_out);

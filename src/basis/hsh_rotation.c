@@ -226,6 +226,8 @@ static double angle_limit(assay_hsh_rotation_way way)
     return way == ASSAY_HSH_EXACT || way == ASSAY_HSH_CONVERSION ? ASSAY_PI : 0.5 * ASSAY_PI;
 }
 
+static const assay_hsh_rotation_options EXACT = {.way = ASSAY_HSH_EXACT};
+
 static assay_status check(const assay_basis *hsh, assay_context *context,
                           const assay_hsh_rotation_options *options)
 {
@@ -268,6 +270,7 @@ assay_status assay_hsh_rotation_y(const assay_basis *hsh, assay_context *context
                                   const assay_hsh_rotation_options *options, double beta,
                                   double *matrix_out)
 {
+    options                   = options ? options : &EXACT;
     const assay_status status = check(hsh, context, options);
     if (status) {
         return status;
@@ -313,6 +316,7 @@ assay_status assay_hsh_rotation(const assay_basis *hsh, assay_context *context,
                                 const assay_hsh_rotation_options *options, const double rotation[9],
                                 double *matrix_out)
 {
+    options             = options ? options : &EXACT;
     assay_status status = check(hsh, context, options);
     if (status) {
         return status;

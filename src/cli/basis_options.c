@@ -3,6 +3,7 @@
  * Invariant: every name that a table of `assay basis ...` holds is in READERS. */
 #include "basis_options.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -15,12 +16,29 @@ static const char NO_BASIS[] =
 
 double cli_radians(double degrees) { return degrees / 180.0 * PI; }
 
-/* The third column of the rotation that takes +z there. */
+/* Sine and cosine of degrees, exact where they are 0, 1 or 1/2: 90 degrees are the horizon, not
+ * 6e-17 above it.  Within an eighth of a turn a rotation matrix holds both. */
+static void sincos_degrees(double degrees, double *sin_out, double *cos_out)
+{
+    const double rest = remainder(degrees, 90.0);
+    const int    turn = (int)fmod((degrees - rest) / 90.0, 4.0);
+    double       r[9];
+    assay_rotation_from_euler_zyz(cli_radians(rest), 0.0, 0.0, r);
+    const double s = fabs(rest) == 30.0 ? copysign(0.5, rest) : r[3], c = r[0];
+    switch (turn & 3) {
+    case 0: *sin_out = s, *cos_out = c; break;
+    case 1: *sin_out = c, *cos_out = -s; break;
+    case 2: *sin_out = -s, *cos_out = -c; break;
+    default: *sin_out = -c, *cos_out = s; break;
+    }
+}
+
 assay_vec3 cli_direction(double theta_deg, double phi_deg)
 {
-    double r[9];
-    assay_rotation_from_euler_zyz(cli_radians(phi_deg), cli_radians(theta_deg), 0.0, r);
-    return (assay_vec3){r[2], r[5], r[8]};
+    double sin_theta, cos_theta, sin_phi, cos_phi;
+    sincos_degrees(theta_deg, &sin_theta, &cos_theta);
+    sincos_degrees(phi_deg, &sin_phi, &cos_phi);
+    return (assay_vec3){sin_theta * cos_phi + 0.0, sin_theta * sin_phi + 0.0, cos_theta + 0.0};
 }
 
 static const char *const WAYS[ASSAY_HSH_ROTATION_WAY_COUNT] = {

@@ -1,6 +1,8 @@
 /* cmd_basis_project.c - `assay basis project`: an environment map or a lobe in a basis. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "basis_options.h"
 #include "basis_print.h"
@@ -14,8 +16,9 @@ static const cli_option OPTIONS[] = {
     BASIS_OPTION_LOBE,
     BASIS_OPTION_BASIS,
     BASIS_OPTION_ORDER,
-    {"theta-nodes", 0, "N", "of the quadrature of a lobe (default 128)"},
-    {"phi-nodes", 0, "N", "around (default 256)"},
+    {"theta-nodes", 0, "N",
+     "of the quadrature of a lobe; without it nodes are doubled until nothing moves"},
+    {"phi-nodes", 0, "N", "around (default: twice as many)"},
     {"samples", 0, "N", "Monte Carlo instead, with variances"},
     {"seed", 0, "S", "of its random numbers (default 0)"},
     BASIS_OPTION_CONVENTION,
@@ -83,20 +86,85 @@ static void lobe_value(void *user, assay_vec3 direction, double *values_out)
     }
 }
 
+/* ---- a lobe ---- */
+
+enum { FIRST_NODES = 64, MOST_NODES = 2048 };
+
+static const double SETTLED = 1e-11; /* of the largest coefficient */
+
+static assay_status integrate(assay_context *context, const assay_basis *basis, assay_lobe *lobe,
+                              int nodes, double *coefficients)
+{
+    return assay_basis_project(basis, context, lobe_value, lobe, 1, nodes, 2 * nodes, coefficients);
+}
+
+/* How far two rows are from each other, in units of the largest coefficient. */
+static double movement(size_t count, const double *a, const double *b)
+{
+    double moved = 0.0, largest = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        moved   = fmax(moved, fabs(a[i] - b[i]));
+        largest = fmax(largest, fabs(b[i]));
+    }
+    return largest > 0.0 ? moved / largest : 0.0;
+}
+
+/* Doubles the nodes until no coefficient moves; refuses what does not settle.  spare: a row. */
+static assay_status integrate_until_settled(cli_console *console, assay_context *context,
+                                            const assay_basis *basis, assay_lobe *lobe,
+                                            const char *lobe_text, double *coefficients,
+                                            double *spare)
+{
+    const size_t count  = assay_basis_count(basis);
+    double       moved  = INFINITY;
+    assay_status status = integrate(context, basis, lobe, FIRST_NODES, spare);
+    for (int n = 2 * FIRST_NODES; n <= MOST_NODES && status == ASSAY_OK && !(moved <= SETTLED);
+         n *= 2) {
+        status = integrate(context, basis, lobe, n, coefficients);
+        moved  = movement(count, spare, coefficients);
+        memcpy(spare, coefficients, count * sizeof *spare);
+    }
+    if (status == ASSAY_OK && !(moved <= SETTLED)) {
+        cli_complain(COMMAND,
+                     "--lobe %s: with %d nodes coefficients still move by %.2g of the largest; "
+                     "--theta-nodes takes a number without that check, --samples takes random ones",
+                     lobe_text, MOST_NODES, moved);
+        console->said = true;
+        return ASSAY_ERR_DOMAIN;
+    }
+    return status;
+}
+
+static assay_status project_lobe(cli_console *console, assay_context *context,
+                                 const assay_basis *basis, const basis_request *r,
+                                 double *coefficients)
+{
+    const size_t count = assay_basis_count(basis);
+    assay_lobe   lobe  = r->lobe;
+    if (r->samples > 0) {
+        return assay_basis_project_random(basis, context, lobe_value, &lobe, 1,
+                                          (uint64_t)r->samples, r->seed, coefficients,
+                                          coefficients + count);
+    }
+    if (r->theta_nodes || r->phi_nodes) {
+        const long theta = r->theta_nodes ? r->theta_nodes : r->phi_nodes / 2 + 1;
+        const long phi   = r->phi_nodes ? r->phi_nodes : 2 * theta;
+        return assay_basis_project(basis, context, lobe_value, &lobe, 1, (int)theta, (int)phi,
+                                   coefficients);
+    }
+    return integrate_until_settled(console, context, basis, &lobe, r->lobe_text, coefficients,
+                                   coefficients + count);
+}
+
 /* coefficients: one row; behind it, where there are samples, one of variances. */
-static assay_status report_lobe(assay_context *context, const assay_basis *basis,
-                                const basis_request *r, double *coefficients)
+static assay_status report_lobe(cli_console *console, assay_context *context,
+                                const assay_basis *basis, const basis_request *r,
+                                double *coefficients)
 {
     static const char *const names[2] = {"value", "variance"};
     const size_t             count    = assay_basis_count(basis);
-    assay_lobe               lobe     = r->lobe;
     const bool               random   = r->samples > 0;
-    assay_status             status =
-        random
-                        ? assay_basis_project_random(basis, context, lobe_value, &lobe, 1, (uint64_t)r->samples,
-                                                     r->seed, coefficients, coefficients + count)
-                        : assay_basis_project(basis, context, lobe_value, &lobe, 1, (int)r->theta_nodes,
-                                              (int)r->phi_nodes, coefficients);
+    const assay_status       status   = project_lobe(console, context, basis, r, coefficients);
     if (status != ASSAY_OK) {
         return status;
     }
@@ -112,7 +180,7 @@ static assay_status report_lobe(assay_context *context, const assay_basis *basis
     return cli_json_print(root, ok);
 }
 
-static assay_status report(assay_context *context, const basis_request *r)
+static assay_status report(cli_console *console, assay_context *context, const basis_request *r)
 {
     assay_basis *basis  = NULL;
     assay_status status = cli_basis_create(context, r, r->basis, r->order, &basis);
@@ -125,7 +193,7 @@ static assay_status report(assay_context *context, const basis_request *r)
     } else if (r->env) {
         status = report_map(context, basis, r, coefficients);
     } else {
-        status = report_lobe(context, basis, r, coefficients);
+        status = report_lobe(console, context, basis, r, coefficients);
     }
     free(coefficients);
     assay_basis_destroy(basis);
@@ -144,6 +212,14 @@ static bool makes_sense(const basis_request *r)
         return cli_complain(COMMAND, "an environment map is projected to --basis sh; convert and "
                                      "rotate take it from there");
     }
+    if (r->env && (r->samples || r->theta_nodes || r->phi_nodes)) {
+        return cli_complain(COMMAND,
+                            "--samples, --theta-nodes and --phi-nodes are of --lobe: a map "
+                            "is integrated exactly");
+    }
+    if (r->samples && (r->theta_nodes || r->phi_nodes)) {
+        return cli_complain(COMMAND, "--samples and nodes: one way at a time");
+    }
     if (r->irradiance && !r->env) {
         return cli_complain(COMMAND, "--irradiance is of --env");
     }
@@ -153,7 +229,7 @@ static bool makes_sense(const basis_request *r)
 
 int cli_basis_project(int count, char **argv)
 {
-    basis_request request = {.basis = ASSAY_BASIS_SH, .theta_nodes = 128, .phi_nodes = 256};
+    basis_request request = {.basis = ASSAY_BASIS_SH};
     cli_console   console;
     if (!cli_basis_parse(COMMAND, count, argv, OPTIONS, &request)) {
         return CLI_EXIT_USAGE;
@@ -171,7 +247,7 @@ int cli_basis_project(int count, char **argv)
     if (!context) {
         return assay_status_exit_code(ASSAY_ERR_MEMORY);
     }
-    const int code = cli_console_finish(&console, context, report(context, &request));
+    const int code = cli_console_finish(&console, context, report(&console, context, &request));
     assay_context_destroy(context);
     return code;
 }

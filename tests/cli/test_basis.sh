@@ -61,6 +61,9 @@ one thing at a time|project --env x.exr --lobe phong:5@0 --order 3
 --basis sh|project --env x.exr --basis hsh --order 3
 --order is missing|project --env x.exr
 --basis is missing|project --lobe phong:5@0 --order 3
+still move by|project --lobe phong:1e7@30 --basis hsh --order 1
+are of --lobe|project --env x.exr --order 3 --samples 9
+one way at a time|project --lobe phong:5@0 --basis sh --order 3 --samples 9 --theta-nodes 5
 --irradiance is of --env|project --lobe phong:5@0 --basis sh --order 3 --irradiance
 nowhere.exr|project --env nowhere.exr --order 3
 phong:EXPONENT@THETA|project --lobe blinn:5@0 --basis sh --order 3

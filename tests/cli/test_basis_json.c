@@ -1,5 +1,6 @@
 /* test_basis_json.c - `assay basis ... --json`: it holds the library's numbers, every bit of them.
  */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -257,7 +258,33 @@ static void projection_of_a_lobe(void **state)
     json = run_json(0, "basis project --lobe phong:5@0 --basis hsh --order 2 --json");
     is_list(json_member(json, "values"), c, 4);
     cJSON_Delete(json);
+    /* A narrow lobe, off the pole: 2 pi / (k + 1) times the constant 1 / sqrt(2 pi). */
+    json = run_json(0, "basis project --lobe phong:10000@30 --basis hsh --order 1 --json");
+    const double value = cJSON_GetArrayItem(json_member(json, "values"), 0)->valuedouble;
+    assert_true(fabs(value * 10001.0 / sqrt(2.0 * 3.14159265358979323846) - 1.0) < 1e-10);
+    cJSON_Delete(json);
     assay_basis_destroy(basis);
+}
+
+/* Degrees whose sine or cosine is 0 or 1/2 mean just that: 90 is the horizon itself. */
+static void degrees_are_exact(void **state)
+{
+    (void)state;
+    cJSON *json =
+        run_json(0, "basis eval --basis hsh --order 3 --theta-deg 90 --phi-deg 180 --json");
+    for (int i = 0; i < 9; i++) {
+        const bool zonal = i == 0 || i == 2 || i == 6;
+        assert_true(zonal ||
+                    cJSON_GetArrayItem(json_member(json, "values"), i)->valuedouble == 0.0);
+    }
+    cJSON_Delete(json);
+    json = run_json(0, "basis eval --basis hsh --order 2 --theta-deg 60 --phi-deg 0 --json");
+    assert_true(cJSON_GetArrayItem(json_member(json, "values"), 2)->valuedouble == 0.0);
+    cJSON_Delete(json);
+    json = run_json(0, "basis eval --basis sh --order 2 --theta-deg 90 --phi-deg -90 --json");
+    assert_true(cJSON_GetArrayItem(json_member(json, "values"), 3)->valuedouble == 0.0);
+    assert_true(cJSON_GetArrayItem(json_member(json, "values"), 1)->valuedouble > 0.0);
+    cJSON_Delete(json);
 }
 
 int main(void)
@@ -270,6 +297,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(accuracies, set_up, tear_down),
         cmocka_unit_test_setup_teardown(projection_of_a_map, set_up, tear_down),
         cmocka_unit_test_setup_teardown(projection_of_a_lobe, set_up, tear_down),
+        cmocka_unit_test(degrees_are_exact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
