@@ -79,6 +79,16 @@ ASSAY_API size_t assay_basis_count(const assay_basis *basis);
  * 1)/2 + (l + m)/2. */
 ASSAY_API void assay_basis_function(const assay_basis *basis, size_t i, int *l_out, int *m_out);
 
+/* ---- Legendre polynomials ---- */
+
+/* P_l^m(x) of 0 <= m <= l < order: values_out[l (l + 1) / 2 + m], with (-1)^m, by [gautron06]
+ * eq. 3.4 to 3.6; shifted: of 2 x - 1 [gautron06] 3.3.1.  order (order + 1) / 2 numbers, not
+ * normalised: up to 63!! = 1e42.  Errors: ARGUMENT (order outside 1 ... ASSAY_BASIS_MAX_ORDER),
+ * DOMAIN (x outside
+ * [-1, 1]; shifted: [0, 1]). */
+ASSAY_API assay_status assay_legendre(int order, double x, double *values_out);
+ASSAY_API assay_status assay_legendre_shifted(int order, double x, double *values_out);
+
 /* ---- values ---- */
 
 /* values_out: count, all functions at a direction.
@@ -141,6 +151,16 @@ ASSAY_API assay_status assay_basis_project_environment(const assay_basis *basis,
 /* A_l of the clamped cosine, l < order: irradiance = sum of A_l c_l^m Y_l^m(n) [kontkanen] table 1;
  * pi, 2 pi / 3, pi / 4, 0, -pi / 24, ...  Errors: ARGUMENT (order). */
 ASSAY_API assay_status assay_clamped_cosine(int order, double *a_out);
+
+/* The diffuse convolution: coefficients of radiance, channels rows of count, become those of
+ * irradiance, in place.  Errors: ARGUMENT (kind other than SH, channels < 1). */
+ASSAY_API assay_status assay_basis_convolve_cosine(const assay_basis *sh, int channels,
+                                                   double *coefficients);
+
+/* Sum of a_i b_i: of an orthonormal basis (all but LSOSH; Makhotkin's under its weight) the
+ * integral of the product of both functions, as far as the basis holds them [gautron06] eq. 3.14.
+ */
+ASSAY_API double assay_basis_dot(const assay_basis *basis, const double *a, const double *b);
 
 /* ---- rotation ---- */
 

@@ -26,3 +26,29 @@ assay_status assay_clamped_cosine(int order, double *a_out)
     }
     return ASSAY_OK;
 }
+
+assay_status assay_basis_convolve_cosine(const assay_basis *sh, int channels, double *coefficients)
+{
+    if (assay_basis_kind_of(sh) != ASSAY_BASIS_SH || channels < 1) {
+        return ASSAY_ERR_ARGUMENT;
+    }
+    const size_t       count = assay_basis_count(sh);
+    double             a[ASSAY_BASIS_MAX_ORDER];
+    const assay_status status = assay_clamped_cosine(assay_basis_order(sh), a);
+    for (size_t i = 0; status == ASSAY_OK && i < (size_t)channels * count; i++) {
+        int l, m;
+        assay_basis_function(sh, i % count, &l, &m);
+        coefficients[i] *= a[l];
+    }
+    return status;
+}
+
+double assay_basis_dot(const assay_basis *basis, const double *a, const double *b)
+{
+    const size_t count = assay_basis_count(basis);
+    double       sum   = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}

@@ -26,16 +26,6 @@ static const cli_option OPTIONS[] = {
 
 enum { CHANNELS = 3 };
 
-static void convolve(const assay_basis *basis, const double *a, double *coefficients)
-{
-    const size_t count = assay_basis_count(basis);
-    for (size_t i = 0; i < CHANNELS * count; i++) {
-        int l, m;
-        assay_basis_function(basis, i % count, &l, &m);
-        coefficients[i] *= a[l];
-    }
-}
-
 static assay_status project_map(assay_context *context, const assay_basis *basis,
                                 const basis_request *r, double *coefficients)
 {
@@ -47,11 +37,7 @@ static assay_status project_map(assay_context *context, const assay_basis *basis
     }
     assay_image_destroy(map);
     if (status == ASSAY_OK && r->irradiance) {
-        double a[ASSAY_BASIS_MAX_ORDER];
-        status = assay_clamped_cosine(assay_basis_order(basis), a);
-        if (status == ASSAY_OK) {
-            convolve(basis, a, coefficients);
-        }
+        status = assay_basis_convolve_cosine(basis, CHANNELS, coefficients);
     }
     return status;
 }
