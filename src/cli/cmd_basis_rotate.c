@@ -77,6 +77,11 @@ static bool makes_sense(const basis_request *r)
     if (r->has_euler && r->has_beta) {
         return cli_complain(COMMAND, "--euler-zyz-deg and --beta-deg: one of them says it all");
     }
+    if (r->basis == ASSAY_BASIS_HSH && ((r->sh_order && r->via != ASSAY_HSH_CONVERSION) ||
+                                        (r->table_steps && r->via != ASSAY_HSH_TABLE))) {
+        return cli_complain(COMMAND, "--sh-order is of --via conversion, --table-steps of --via "
+                                     "table");
+    }
     if (r->basis != ASSAY_BASIS_HSH && (r->has_via || r->sh_order || r->table_steps)) {
         return cli_complain(COMMAND, "--via, --sh-order and --table-steps are of --basis hsh: SH "
                                      "turn exactly");

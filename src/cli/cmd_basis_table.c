@@ -111,6 +111,10 @@ int cli_basis_table(int count, char **argv)
         !cli_basis_need(COMMAND, request.order > 0, "--order")) {
         return CLI_EXIT_USAGE;
     }
+    if (request.output && (request.json || request.hex)) {
+        cli_complain(COMMAND, "--json and --hex are of what is printed, not of --output");
+        return CLI_EXIT_USAGE;
+    }
     int check =
         request.output ? cli_check_extension(COMMAND, "--output", request.output, ".npy") : 0;
     check = check || !request.output ? check : cli_check_file(COMMAND, request.output);

@@ -64,6 +64,9 @@ one thing at a time|project --env x.exr --lobe phong:5@0 --order 3
 still move by|project --lobe phong:1e7@30 --basis hsh --order 1
 are of --lobe|project --env x.exr --order 3 --samples 9
 one way at a time|project --lobe phong:5@0 --basis sh --order 3 --samples 9 --theta-nodes 5
+--table-steps of --via table|rotate --basis hsh --via exact --order 2 --beta-deg 30 --table-steps 5
+--sh-order is of --via conversion|rotate --basis hsh --order 2 --beta-deg 30 --sh-order 5
+not of --output|table --basis hsh --order 2 -o t.npy --json
 --irradiance is of --env|project --lobe phong:5@0 --basis sh --order 3 --irradiance
 nowhere.exr|project --env nowhere.exr --order 3
 phong:EXPONENT@THETA|project --lobe blinn:5@0 --basis sh --order 3
