@@ -1,4 +1,5 @@
 /* cmd_basis_rotate.c - `assay basis rotate`: rotation matrices of SH and HSH. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -76,6 +77,12 @@ static bool makes_sense(const basis_request *r)
     }
     if (r->has_euler && r->has_beta) {
         return cli_complain(COMMAND, "--euler-zyz-deg and --beta-deg: one of them says it all");
+    }
+    const bool   whole = r->via == ASSAY_HSH_EXACT || r->via == ASSAY_HSH_CONVERSION;
+    const double limit = whole ? 180.0 : 90.0;
+    if (r->basis == ASSAY_BASIS_HSH && r->has_beta && !(fabs(r->beta_deg) <= limit)) {
+        return cli_complain(COMMAND, "--beta-deg %.10g: --via %s takes -%g to %g degrees",
+                            r->beta_deg, cli_way_name(r->via), limit, limit);
     }
     if (r->basis == ASSAY_BASIS_HSH && ((r->sh_order && r->via != ASSAY_HSH_CONVERSION) ||
                                         (r->table_steps && r->via != ASSAY_HSH_TABLE))) {
