@@ -168,6 +168,7 @@ static inline __attribute__((always_inline)) bool decide_leaf(walk_state *s, con
     return true;
 }
 
+/* For the closest hit, out of line: in line it would take the walk's registers. */
 static __attribute__((noinline)) bool try_leaf(walk_state *s, const bvh_leaf *leaf)
 {
     return decide_leaf(s, leaf, false);
