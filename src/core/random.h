@@ -1,7 +1,8 @@
 /* random.h - counter-based random numbers.
  *
- * Philox4x32-10 [salmon11] through Random123: number k of a stream is a pure function of (seed,
- * stage, item, sample, k), so no state travels between items and no order of work changes it. */
+ * Philox4x64-10 [salmon11] through Random123: number k of a stream is a pure function of (seed,
+ * stage, item, sample, k), so no state travels between items and no order of work changes it.
+ * docs/determinism.md says how to have the same numbers from another program. */
 #ifndef ASSAY_CORE_RANDOM_H
 #define ASSAY_CORE_RANDOM_H
 
@@ -20,43 +21,29 @@ typedef enum {
 } assay_stage;
 
 typedef struct {
-    philox4x32_ctr_t counter; /* [0] block, [1] sample, [2] item low, [3] item high */
-    philox4x32_key_t key;     /* seed mixed with stage                              */
-    double           spare;
-    int              has_spare;
+    philox4x64_ctr_t counter; /* [0] block, from 1; [1] sample; [2] item; [3] stage */
+    philox4x64_key_t key;     /* [0] seed                                           */
+    philox4x64_ctr_t block;   /* the block that numbers are taken from              */
+    unsigned         taken;   /* of its four                                        */
 } assay_random;
 
-/* The stream of an item's sample. item < 2^56 (its top byte carries the stage). */
+/* The stream of an item's sample. */
 static inline assay_random assay_random_start(uint64_t seed, assay_stage stage, uint64_t item,
-                                              uint32_t sample)
+                                              uint64_t sample)
 {
-    assay_random random = {0};
-    random.counter.v[1] = sample;
-    random.counter.v[2] = (uint32_t)item;
-    random.counter.v[3] = (uint32_t)(item >> 32) | ((uint32_t)stage << 24);
-    random.key.v[0]     = (uint32_t)seed;
-    random.key.v[1]     = (uint32_t)(seed >> 32);
-    return random;
-}
-
-static inline double assay_random_unit53(uint32_t high, uint32_t low)
-{
-    const uint64_t bits = ((uint64_t)high << 32 | low) >> 11;
-    return (double)bits * 0x1p-53;
+    return (assay_random){
+        .counter = {{0, sample, item, (uint64_t)stage}}, .key = {{seed, 0}}, .taken = 4};
 }
 
 /* The next number of the stream, uniform in [0, 1), 53 bits. */
 static inline double assay_random_next(assay_random *random)
 {
-    if (random->has_spare) {
-        random->has_spare = 0;
-        return random->spare;
+    if (random->taken == 4) {
+        random->counter.v[0]++;
+        random->block = philox4x64(random->counter, random->key);
+        random->taken = 0;
     }
-    const philox4x32_ctr_t r = philox4x32(random->counter, random->key);
-    random->counter.v[0]++;
-    random->spare     = assay_random_unit53(r.v[3], r.v[2]);
-    random->has_spare = 1;
-    return assay_random_unit53(r.v[1], r.v[0]);
+    return (double)(random->block.v[random->taken++] >> 11) * 0x1p-53;
 }
 
 #endif

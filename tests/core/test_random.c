@@ -3,48 +3,75 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
 
 #include "core/random.h"
 
-/* Known answers of Philox4x32-10 from the Random123 distribution's kat_vectors. */
+/* One block by the definition of [salmon11], section 3.2, in 128-bit products. */
+static void philox_by_definition(const uint64_t counter[4], const uint64_t key[2],
+                                 uint64_t block_out[4])
+{
+    uint64_t x[4] = {counter[0], counter[1], counter[2], counter[3]};
+    uint64_t k[2] = {key[0], key[1]};
+    for (int round = 0; round < 10; round++) {
+        const unsigned __int128 a      = (unsigned __int128)0xd2e7470ee14c6c93u * x[0];
+        const unsigned __int128 b      = (unsigned __int128)0xca5a826395121157u * x[2];
+        const uint64_t          next[] = {(uint64_t)(b >> 64) ^ x[1] ^ k[0], (uint64_t)b,
+                                          (uint64_t)(a >> 64) ^ x[3] ^ k[1], (uint64_t)a};
+        memcpy(x, next, sizeof x);
+        k[0] += 0x9e3779b97f4a7c15u;
+        k[1] += 0xbb67ae8584caa73bu;
+    }
+    memcpy(block_out, x, sizeof x);
+}
+
+/* Known answers of Philox4x64-10 from the Random123 distribution's kat_vectors, for Random123's
+ * generator and for the judge of the streams below. */
 static void philox_known_answers(void **state)
 {
     (void)state;
     static const struct {
-        uint32_t counter[4], key[2], answer[4];
+        uint64_t counter[4], key[2], answer[4];
     } CASES[] = {
-        {{0, 0, 0, 0}, {0, 0}, {0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}},
-        {{~0u, ~0u, ~0u, ~0u}, {~0u, ~0u}, {0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}},
-        {{0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344},
-         {0xa4093822, 0x299f31d0},
-         {0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}},
+        {{0, 0, 0, 0},
+         {0, 0},
+         {0x16554d9eca36314cu, 0xdb20fe9d672d0fdcu, 0xd7e772cee186176bu, 0x7e68b68aec7ba23bu}},
+        {{~0ul, ~0ul, ~0ul, ~0ul},
+         {~0ul, ~0ul},
+         {0x87b092c3013fe90bu, 0x438c3c67be8d0224u, 0x9cc7d7c69cd777b6u, 0xa09caebf594f0ba0u}},
+        {{0x243f6a8885a308d3u, 0x13198a2e03707344u, 0xa4093822299f31d0u, 0x082efa98ec4e6c89u},
+         {0x452821e638d01377u, 0xbe5466cf34e90c6cu},
+         {0xa528f45403e61d95u, 0x38c72dbd566e9788u, 0xa5a1610e72fd18b5u, 0x57bd43b5e52b7fe6u}},
     };
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
-        philox4x32_ctr_t counter;
-        philox4x32_key_t key;
-        for (int k = 0; k < 4; k++) {
-            counter.v[k] = CASES[i].counter[k];
-        }
-        key.v[0]                      = CASES[i].key[0];
-        key.v[1]                      = CASES[i].key[1];
-        const philox4x32_ctr_t answer = philox4x32(counter, key);
-        for (int k = 0; k < 4; k++) {
-            assert_int_equal(answer.v[k], CASES[i].answer[k]);
-        }
+        philox4x64_ctr_t counter;
+        philox4x64_key_t key;
+        uint64_t         defined[4];
+        memcpy(counter.v, CASES[i].counter, sizeof counter.v);
+        memcpy(key.v, CASES[i].key, sizeof key.v);
+        const philox4x64_ctr_t answer = philox4x64(counter, key);
+        philox_by_definition(CASES[i].counter, CASES[i].key, defined);
+        assert_memory_equal(answer.v, CASES[i].answer, sizeof answer.v);
+        assert_memory_equal(defined, CASES[i].answer, sizeof defined);
     }
 }
 
-/* The stream's first numbers, from the known answer of counter 0 and key 0. */
-static void stream_is_the_generator(void **state)
+/* The stream as docs/determinism.md gives it to other programs. */
+static void stream_is_the_documented_one(void **state)
 {
     (void)state;
-    assay_random random = assay_random_start(0, ASSAY_STAGE_TEST, 0, 0);
-    assert_true(assay_random_next(&random) ==
-                (double)((0xe169c58dull << 32 | 0x6627e8d5ull) >> 11) * 0x1p-53);
-    assert_true(assay_random_next(&random) ==
-                (double)((0x9b00dbd8ull << 32 | 0xbc57ac4cull) >> 11) * 0x1p-53);
+    const uint64_t seed = 0xfeedfacecafebeefu, item = 0x0123456789abcdefu, sample = 1ull << 40;
+    assay_random   random = assay_random_start(seed, ASSAY_STAGE_PROBE, item, sample);
+    for (uint64_t block = 1; block <= 3; block++) {
+        const uint64_t counter[] = {block, sample, item, 3}, key[] = {seed, 0};
+        uint64_t       words[4];
+        philox_by_definition(counter, key, words);
+        for (int k = 0; k < 4; k++) {
+            assert_true(assay_random_next(&random) == (double)(words[k] >> 11) / 0x1p53);
+        }
+    }
 }
 
 /* Streams that differ in one part of their address share no number; the same address gives the same
@@ -56,11 +83,12 @@ static void streams_are_separate(void **state)
         uint64_t    seed;
         assay_stage stage;
         uint64_t    item;
-        uint32_t    sample;
+        uint64_t    sample;
     } addresses[] = {{1, ASSAY_STAGE_CAMERA, 2, 3},         {2, ASSAY_STAGE_CAMERA, 2, 3},
                      {1, ASSAY_STAGE_PROBE, 2, 3},          {1, ASSAY_STAGE_CAMERA, 3, 3},
                      {1, ASSAY_STAGE_CAMERA, 2, 4},         {1ull << 32, ASSAY_STAGE_CAMERA, 2, 3},
-                     {1, ASSAY_STAGE_CAMERA, 1ull << 40, 3}};
+                     {1, ASSAY_STAGE_CAMERA, 1ull << 40, 3},
+                     {1, ASSAY_STAGE_CAMERA, 2, 1ull << 40}};
     enum { COUNT = sizeof addresses / sizeof addresses[0] };
     double first[COUNT];
     for (size_t i = 0; i < COUNT; i++) {
@@ -99,7 +127,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(philox_known_answers),
-        cmocka_unit_test(stream_is_the_generator),
+        cmocka_unit_test(stream_is_the_documented_one),
         cmocka_unit_test(streams_are_separate),
         cmocka_unit_test(moments),
     };
