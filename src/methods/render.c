@@ -53,7 +53,8 @@ static assay_status find_camera(const assay_scene *scene, const char *name, doub
     *camera_out = scene->world_cameras[index];
     /* The camera of a scene without one shows it all in tall images, too. */
     if (scene->camera_is_made && aspect < 1.0) {
-        camera_out->yfov = 2.0 * assay_atan2(assay_tan(0.5 * camera_out->yfov), aspect);
+        camera_out->tan_half_yfov /= aspect;
+        camera_out->yfov = 2.0 * assay_atan(camera_out->tan_half_yfov);
     }
     return ASSAY_OK;
 }

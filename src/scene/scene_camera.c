@@ -27,12 +27,13 @@ static void set_frame(assay_camera *camera, assay_vec3 forward, assay_vec3 up)
 static void place_camera(const assay_scene *scene, const assay_camera_desc *from, assay_camera *to)
 {
     const assay_affine *world = &scene->node_worlds[from->node];
-    *to                       = (assay_camera){.name         = from->name,
-                                               .position     = world->t,
-                                               .orthographic = from->orthographic,
-                                               .yfov         = from->yfov,
-                                               .xmag         = from->xmag,
-                                               .ymag         = from->ymag};
+    *to                       = (assay_camera){.name          = from->name,
+                                               .position      = world->t,
+                                               .orthographic  = from->orthographic,
+                                               .yfov          = from->yfov,
+                                               .xmag          = from->xmag,
+                                               .ymag          = from->ymag,
+                                               .tan_half_yfov = assay_tan(0.5 * from->yfov)};
     set_frame(to, vec3_negate(world->z), world->y);
 }
 
@@ -46,9 +47,10 @@ static void frame_scene(const assay_scene *scene, assay_camera *camera)
     const double        radius          = 0.5 * vec3_length(diagonal);
     const double        distance        = (radius > 0.0 ? radius : 1.0) / half_angle_sine;
     *camera                             = (assay_camera){
-                                    .name     = "framing",
-                                    .position = vec3_mad(vec3_mad(scene->bounds_min, 0.5, diagonal), distance, from),
-                                    .yfov     = ASSAY_PI / 4.0};
+                                    .name          = "framing",
+                                    .position      = vec3_mad(vec3_mad(scene->bounds_min, 0.5, diagonal), distance, from),
+                                    .yfov          = ASSAY_PI / 4.0,
+                                    .tan_half_yfov = assay_tan(ASSAY_PI / 8.0)};
     set_frame(camera, vec3_negate(from), vec3(0.0, 1.0, 0.0));
 }
 

@@ -147,6 +147,7 @@ typedef struct {
     assay_vec3  position, right, up, forward; /* unit, orthogonal */
     bool        orthographic;
     double      yfov, xmag, ymag;
+    double      tan_half_yfov; /* every ray asks for it */
 } assay_camera;
 
 /* Latitude-longitude radiance, already scaled; see scene/environment.h. */

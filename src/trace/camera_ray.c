@@ -17,7 +17,7 @@ void assay_camera_ray(const assay_camera *camera, double x, double y, int width,
         *direction_out = camera->forward;
         return;
     }
-    const double half_height = assay_tan(0.5 * camera->yfov);
+    const double half_height = camera->tan_half_yfov;
     const double half_width  = half_height * aspect;
     *origin_out              = camera->position;
     *direction_out           = vec3_normalize(vec3_mad(

@@ -84,11 +84,11 @@ static void streams_are_separate(void **state)
         assay_stage stage;
         uint64_t    item;
         uint64_t    sample;
-    } addresses[] = {{1, ASSAY_STAGE_CAMERA, 2, 3},         {2, ASSAY_STAGE_CAMERA, 2, 3},
-                     {1, ASSAY_STAGE_PROBE, 2, 3},          {1, ASSAY_STAGE_CAMERA, 3, 3},
-                     {1, ASSAY_STAGE_CAMERA, 2, 4},         {1ull << 32, ASSAY_STAGE_CAMERA, 2, 3},
-                     {1, ASSAY_STAGE_CAMERA, 1ull << 40, 3},
-                     {1, ASSAY_STAGE_CAMERA, 2, 1ull << 40}};
+    } addresses[] = {
+        {1, ASSAY_STAGE_CAMERA, 2, 3},          {2, ASSAY_STAGE_CAMERA, 2, 3},
+        {1, ASSAY_STAGE_PROBE, 2, 3},           {1, ASSAY_STAGE_CAMERA, 3, 3},
+        {1, ASSAY_STAGE_CAMERA, 2, 4},          {1ull << 32, ASSAY_STAGE_CAMERA, 2, 3},
+        {1, ASSAY_STAGE_CAMERA, 1ull << 40, 3}, {1, ASSAY_STAGE_CAMERA, 2, 1ull << 40}};
     enum { COUNT = sizeof addresses / sizeof addresses[0] };
     double first[COUNT];
     for (size_t i = 0; i < COUNT; i++) {
