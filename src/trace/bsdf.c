@@ -49,17 +49,28 @@ static bool is_black(const assay_bsdf *bsdf)
     return rgb_is_black(bsdf->base_color) && rgb_is_black(bsdf->specular_color);
 }
 
-assay_bsdf_value assay_bsdf_evaluate(const assay_bsdf *bsdf, assay_vec3 wo, assay_vec3 wi)
+assay_bsdf_view assay_bsdf_seen_from(const assay_bsdf *bsdf, assay_vec3 wo)
 {
-    const assay_bsdf_value nothing = {{0.0, 0.0, 0.0}, 0.0};
-    const bool             back    = wo.z < 0.0;
-    const bool             general = bsdf->model == ASSAY_BSDF_METALLIC_ROUGHNESS;
-    if (back) {
-        wo = flip(wo);
-        wi = flip(wi);
+    const bool      back = wo.z < 0.0;
+    assay_bsdf_view view;
+    view.bsdf     = bsdf;
+    view.back     = back;
+    view.wo       = back ? flip(wo) : wo;
+    view.specular = is_black(bsdf);
+    view.scatters = view.wo.z >= ASSAY_HORIZON && !view.specular;
+    if (bsdf->model == ASSAY_BSDF_METALLIC_ROUGHNESS && view.scatters) {
+        assay_metallic_roughness_view(&view);
     }
-    if (!(wo.z >= ASSAY_HORIZON) || !(fabs(wi.z) >= ASSAY_HORIZON) || (wi.z < 0.0 && !general) ||
-        is_black(bsdf)) {
+    return view;
+}
+
+/* wi in the mirrored frame. */
+static assay_bsdf_value evaluate(const assay_bsdf_view *view, assay_vec3 wi)
+{
+    const assay_bsdf      *bsdf    = view->bsdf;
+    const assay_bsdf_value nothing = {{0.0, 0.0, 0.0}, 0.0};
+    if (!view->scatters || !(fabs(wi.z) >= ASSAY_HORIZON) ||
+        (wi.z < 0.0 && bsdf->model != ASSAY_BSDF_METALLIC_ROUGHNESS)) {
         return nothing;
     }
     switch (bsdf->model) {
@@ -67,43 +78,45 @@ assay_bsdf_value assay_bsdf_evaluate(const assay_bsdf *bsdf, assay_vec3 wo, assa
         const double pdf = wi.z * ASSAY_INV_PI;
         return (assay_bsdf_value){rgb_scale(bsdf->base_color, pdf), pdf};
     }
-    case ASSAY_BSDF_METALLIC_ROUGHNESS:
-        return assay_metallic_roughness_evaluate(bsdf, back, wo, wi);
-    case ASSAY_BSDF_PHONG: return assay_phong_evaluate(bsdf, wo, wi);
+    case ASSAY_BSDF_METALLIC_ROUGHNESS: return assay_metallic_roughness_evaluate(view, wi);
+    case ASSAY_BSDF_PHONG: return assay_phong_evaluate(bsdf, view->wo, wi);
     case ASSAY_BSDF_WARD:
-    case ASSAY_BSDF_WARD_PUBLISHED: return assay_ward_evaluate(bsdf, wo, wi);
+    case ASSAY_BSDF_WARD_PUBLISHED: return assay_ward_evaluate(bsdf, view->wo, wi);
     case ASSAY_BSDF_BLACK: break;
     }
     return nothing;
 }
 
-/* Asks the model for a direction and what it scatters there. */
-static bool choose(const assay_bsdf *bsdf, bool back, assay_vec3 wo, double u_lobe, double u1,
-                   double u2, assay_bsdf_choice *choice_out)
+assay_bsdf_value assay_bsdf_view_evaluate(const assay_bsdf_view *view, assay_vec3 wi)
 {
-    assay_vec3 wi;
+    return evaluate(view, view->back ? flip(wi) : wi);
+}
+
+/* Asks the model for a direction and what it scatters there. */
+static bool choose(const assay_bsdf_view *view, double u_lobe, double u1, double u2,
+                   assay_bsdf_choice *choice_out)
+{
+    const assay_bsdf *bsdf = view->bsdf;
+    assay_vec3        wi;
     switch (bsdf->model) {
     case ASSAY_BSDF_METALLIC_ROUGHNESS:
-        return assay_metallic_roughness_choose(bsdf, back, wo, u_lobe, u1, u2, choice_out);
+        return assay_metallic_roughness_choose(view, u_lobe, u1, u2, choice_out);
     case ASSAY_BSDF_LAMBERT: wi = assay_sample_cosine_hemisphere(u1, u2); break;
-    case ASSAY_BSDF_PHONG: wi = assay_phong_choose(bsdf, wo, u_lobe, u1, u2); break;
+    case ASSAY_BSDF_PHONG: wi = assay_phong_choose(bsdf, view->wo, u_lobe, u1, u2); break;
     case ASSAY_BSDF_WARD:
-    case ASSAY_BSDF_WARD_PUBLISHED: wi = assay_ward_choose(bsdf, wo, u_lobe, u1, u2); break;
+    case ASSAY_BSDF_WARD_PUBLISHED: wi = assay_ward_choose(bsdf, view->wo, u_lobe, u1, u2); break;
     case ASSAY_BSDF_BLACK:
     default: return false;
     }
-    *choice_out = (assay_bsdf_choice){wi, false, assay_bsdf_evaluate(bsdf, wo, wi)};
+    *choice_out = (assay_bsdf_choice){wi, false, evaluate(view, wi)};
     return true;
 }
 
-bool assay_bsdf_sample_direction(const assay_bsdf *bsdf, assay_vec3 wo, double u_lobe, double u1,
-                                 double u2, assay_bsdf_sample *sample_out)
+bool assay_bsdf_view_sample(const assay_bsdf_view *view, double u_lobe, double u1, double u2,
+                            assay_bsdf_sample *sample_out)
 {
-    const bool        back = wo.z < 0.0;
-    const assay_vec3  up   = back ? flip(wo) : wo;
     assay_bsdf_choice choice;
-    if (!(up.z >= ASSAY_HORIZON) || is_black(bsdf) ||
-        !choose(bsdf, back, up, u_lobe, u1, u2, &choice) || !(choice.f.pdf > 0.0)) {
+    if (!view->scatters || !choose(view, u_lobe, u1, u2, &choice) || !(choice.f.pdf > 0.0)) {
         return false;
     }
     const assay_rgb weight = rgb_scale(choice.f.value, 1.0 / choice.f.pdf);
@@ -111,7 +124,7 @@ bool assay_bsdf_sample_direction(const assay_bsdf *bsdf, assay_vec3 wo, double u
         return false;
     }
     *sample_out = (assay_bsdf_sample){
-        .wi          = back ? flip(choice.wi) : choice.wi,
+        .wi          = view->back ? flip(choice.wi) : choice.wi,
         .weight      = weight,
         .pdf         = choice.f.pdf,
         .specular    = choice.specular,
@@ -120,10 +133,17 @@ bool assay_bsdf_sample_direction(const assay_bsdf *bsdf, assay_vec3 wo, double u
     return true;
 }
 
-bool assay_bsdf_is_specular(const assay_bsdf *bsdf)
+assay_bsdf_value assay_bsdf_evaluate(const assay_bsdf *bsdf, assay_vec3 wo, assay_vec3 wi)
 {
-    return bsdf->model == ASSAY_BSDF_METALLIC_ROUGHNESS ? assay_metallic_roughness_is_specular(bsdf)
-                                                        : is_black(bsdf);
+    const assay_bsdf_view view = assay_bsdf_seen_from(bsdf, wo);
+    return assay_bsdf_view_evaluate(&view, wi);
+}
+
+bool assay_bsdf_sample_direction(const assay_bsdf *bsdf, assay_vec3 wo, double u_lobe, double u1,
+                                 double u2, assay_bsdf_sample *sample_out)
+{
+    const assay_bsdf_view view = assay_bsdf_seen_from(bsdf, wo);
+    return assay_bsdf_view_sample(&view, u_lobe, u1, u2, sample_out);
 }
 
 assay_rgb assay_bsdf_albedo(const assay_bsdf *bsdf)

@@ -50,10 +50,8 @@ assay_bsdf assay_bsdf_default(assay_bsdf_model model);
 /* What one direction scatters. */
 typedef struct {
     assay_rgb value; /* f(wo, wi) |wi.z|, 1/sr; without perfectly specular lobes                 */
-    double    pdf;   /* of assay_bsdf_sample choosing wi, 1/sr; without them too                 */
+    double    pdf;   /* of assay_bsdf_view_sample choosing wi, 1/sr; without them too            */
 } assay_bsdf_value;
-
-assay_bsdf_value assay_bsdf_evaluate(const assay_bsdf *bsdf, assay_vec3 wo, assay_vec3 wi);
 
 typedef struct {
     assay_vec3 wi;
@@ -63,13 +61,46 @@ typedef struct {
     bool       transmitted; /* wi is on the other side                                           */
 } assay_bsdf_sample;
 
+/* The lobes of metallic-roughness as one wo sees them; bsdf_metallic_roughness.c alone reads it. */
+typedef struct {
+    double    alpha;
+    double    metallic;
+    assay_rgb base_color;
+    assay_rgb f0;                             /* of the dielectric, at normal incidence      */
+    double    f90;                            /* at grazing incidence                        */
+    assay_rgb diffuse;                        /* albedo of the base that is diffuse          */
+    assay_rgb through;                        /* tint of the base that transmits             */
+    double    eta;                            /* index behind over index in front            */
+    double    masking;                        /* of wo, rough microfacets only               */
+    bool      refracts;                       /* a solid's boundary, Fresnel's own equations */
+    bool      matched;                        /* a solid that does not bend light            */
+    bool      smooth;                         /* microfacets are one mirror                  */
+    bool      transmits;                      /* through is not black                        */
+    double    p_diffuse, p_straight, p_facet; /* sum 1, or all 0                             */
+} assay_bsdf_lobes;
+
+/* A BSDF as seen from one wo: made once where several directions are asked for. */
+typedef struct {
+    const assay_bsdf *bsdf;
+    assay_vec3        wo;       /* mirrored to wo.z > 0                                         */
+    bool              back;     /* it was mirrored                                              */
+    bool              scatters; /* wo is off the horizon and the surface is not black           */
+    bool              specular; /* no lobe can be evaluated: light sampling is then of no use   */
+    assay_bsdf_lobes  lobes;
+} assay_bsdf_view;
+
+assay_bsdf_view  assay_bsdf_seen_from(const assay_bsdf *bsdf, assay_vec3 wo);
+assay_bsdf_value assay_bsdf_view_evaluate(const assay_bsdf_view *view, assay_vec3 wi);
+
 /* Chooses wi from three uniform numbers in [0, 1).  False where the path ends (nothing scattered,
  * or a direction under the horizon was drawn, which counts as a zero contribution). */
+bool assay_bsdf_view_sample(const assay_bsdf_view *view, double u_lobe, double u1, double u2,
+                            assay_bsdf_sample *sample_out);
+
+/* The same for a single direction. */
+assay_bsdf_value assay_bsdf_evaluate(const assay_bsdf *bsdf, assay_vec3 wo, assay_vec3 wi);
 bool assay_bsdf_sample_direction(const assay_bsdf *bsdf, assay_vec3 wo, double u_lobe, double u1,
                                  double u2, assay_bsdf_sample *sample_out);
-
-/* True where no lobe can be evaluated (all specular): light sampling is then of no use. */
-bool assay_bsdf_is_specular(const assay_bsdf *bsdf);
 
 /* The reflectance that a G-buffer calls albedo: base colour (diffuse, metal or tint; of unlit
  * surfaces, too, though they scatter nothing) + specular colour for Phong and Ward. */

@@ -22,22 +22,7 @@
 /* The cosine whose Schlick weight is 1/21, the mean over the hemisphere. */
 #define MEAN_SCHLICK_COSINE 0.456
 
-/* The lobes as seen from wo. */
-typedef struct {
-    double    alpha;
-    double    metallic;
-    assay_rgb base_color;
-    assay_rgb f0;                             /* of the dielectric, at normal incidence      */
-    double    f90;                            /* at grazing incidence                        */
-    assay_rgb diffuse;                        /* albedo of the base that is diffuse          */
-    assay_rgb through;                        /* tint of the base that transmits             */
-    double    eta;                            /* index behind over index in front            */
-    bool      refracts;                       /* a solid's boundary, Fresnel's own equations */
-    bool      matched;                        /* a solid that does not bend light            */
-    bool      smooth;                         /* microfacets are one mirror                  */
-    bool      transmits;                      /* through is not black                        */
-    double    p_diffuse, p_straight, p_facet; /* sum 1, or all 0        */
-} lobes;
+typedef assay_bsdf_lobes lobes;
 
 /* What one microfacet does. */
 typedef struct {
@@ -115,33 +100,32 @@ static void set_probabilities(lobes *l, bool back, double cos_o)
 
 static double at_most_one(double x) { return x < 1.0 ? x : 1.0; }
 
-static void base_of(const assay_bsdf *bsdf, lobes *l)
+void assay_metallic_roughness_view(assay_bsdf_view *view)
 {
-    const double dielectric = 1.0 - bsdf->metallic;
-    const double f0         = assay_normal_reflectance(bsdf->ior);
-    const double factor     = bsdf->specular_factor;
-    l->alpha                = bsdf->roughness * bsdf->roughness;
-    l->metallic             = bsdf->metallic;
-    l->base_color           = bsdf->base_color;
-    l->f0                   = rgb(at_most_one(f0 * bsdf->specular_color.r) * factor,
-                                  at_most_one(f0 * bsdf->specular_color.g) * factor,
-                                  at_most_one(f0 * bsdf->specular_color.b) * factor);
-    l->f90                  = factor;
-    l->diffuse              = rgb_scale(bsdf->base_color, dielectric * (1.0 - bsdf->transmission));
-    l->through              = rgb_scale(bsdf->base_color, dielectric * bsdf->transmission);
-    l->refracts             = bsdf->solid && bsdf->ior > 0.0;
-    l->matched              = l->refracts && fabs(bsdf->ior - 1.0) < INDEX_MATCHED;
-    l->smooth               = l->alpha < ASSAY_ALPHA_MIN;
-    l->transmits            = !rgb_is_black(l->through);
-}
-
-static lobes lobes_of(const assay_bsdf *bsdf, bool back, double cos_o)
-{
-    lobes l;
-    base_of(bsdf, &l);
-    l.eta = !l.refracts || l.matched ? 1.0 : (back ? 1.0 / bsdf->ior : bsdf->ior);
-    set_probabilities(&l, back, cos_o);
-    return l;
+    const assay_bsdf *bsdf       = view->bsdf;
+    lobes            *l          = &view->lobes;
+    const double      dielectric = 1.0 - bsdf->metallic;
+    const double      f0         = assay_normal_reflectance(bsdf->ior);
+    const double      factor     = bsdf->specular_factor;
+    l->alpha                     = bsdf->roughness * bsdf->roughness;
+    l->metallic                  = bsdf->metallic;
+    l->base_color                = bsdf->base_color;
+    l->f0                        = rgb(at_most_one(f0 * bsdf->specular_color.r) * factor,
+                                       at_most_one(f0 * bsdf->specular_color.g) * factor,
+                                       at_most_one(f0 * bsdf->specular_color.b) * factor);
+    l->f90                       = factor;
+    l->diffuse   = rgb_scale(bsdf->base_color, dielectric * (1.0 - bsdf->transmission));
+    l->through   = rgb_scale(bsdf->base_color, dielectric * bsdf->transmission);
+    l->refracts  = bsdf->solid && bsdf->ior > 0.0;
+    l->matched   = l->refracts && fabs(bsdf->ior - 1.0) < INDEX_MATCHED;
+    l->smooth    = l->alpha < ASSAY_ALPHA_MIN;
+    l->transmits = !rgb_is_black(l->through);
+    l->eta       = !l->refracts || l->matched ? 1.0 : (view->back ? 1.0 / bsdf->ior : bsdf->ior);
+    l->masking   = l->smooth ? 0.0 : assay_ggx_masking(l->alpha, view->wo.z);
+    const bool facets =
+        l->metallic > 0.0 || (!l->matched && (l->f90 > 0.0 || l->transmits || l->refracts));
+    view->specular = rgb_is_black(l->diffuse) && (l->smooth || !facets);
+    set_probabilities(l, view->back, view->wo.z);
 }
 
 static assay_bsdf_value reflection(const lobes *l, assay_vec3 wo, assay_vec3 wi)
@@ -154,7 +138,7 @@ static assay_bsdf_value reflection(const lobes *l, assay_vec3 wo, assay_vec3 wi)
     result.pdf   = l->p_diffuse * (wi.z * ASSAY_INV_PI);
     if (!l->smooth) {
         const double d  = assay_ggx_density(l->alpha, vec3_scale(sum, 1.0 / length));
-        const double go = assay_ggx_masking(l->alpha, wo.z);
+        const double go = l->masking;
         const double gi = assay_ggx_masking(l->alpha, wi.z);
         result.value    = rgb_add(result.value, rgb_scale(f.reflect, d * wi.z / (go * gi)));
         result.pdf += l->p_facet * f.p_reflect * (d / (2.0 * go));
@@ -169,7 +153,7 @@ static assay_bsdf_value thin_transmission(const lobes *l, assay_vec3 wo, assay_v
     const double     length = vec3_length(sum);
     const facet      f      = facet_at(l, 0.5 * length);
     const double     d      = assay_ggx_density(l->alpha, vec3_scale(sum, 1.0 / length));
-    const double     go     = assay_ggx_masking(l->alpha, wo.z);
+    const double     go     = l->masking;
     const double     gi     = assay_ggx_masking(l->alpha, -wi.z);
     return (assay_bsdf_value){rgb_scale(l->through, f.pass * (d * -wi.z / (go * gi))),
                               l->p_facet * (1.0 - f.p_reflect) * (d / (2.0 * go))};
@@ -193,7 +177,7 @@ static assay_bsdf_value refraction(const lobes *l, assay_vec3 wo, assay_vec3 wi)
     }
     const facet  f  = facet_at(l, oh);
     const double d  = assay_ggx_density(l->alpha, h);
-    const double go = assay_ggx_masking(l->alpha, wo.z);
+    const double go = l->masking;
     const double gi = assay_ggx_masking(l->alpha, -wi.z);
     const double j  = oh * ih * d / (go * length2);
     return (assay_bsdf_value){
@@ -213,11 +197,9 @@ static assay_bsdf_value evaluate(const lobes *l, assay_vec3 wo, assay_vec3 wi)
     return l->refracts ? refraction(l, wo, wi) : thin_transmission(l, wo, wi);
 }
 
-assay_bsdf_value assay_metallic_roughness_evaluate(const assay_bsdf *bsdf, bool back, assay_vec3 wo,
-                                                   assay_vec3 wi)
+assay_bsdf_value assay_metallic_roughness_evaluate(const assay_bsdf_view *view, assay_vec3 wi)
 {
-    const lobes l = lobes_of(bsdf, back, wo.z);
-    return evaluate(&l, wo, wi);
+    return evaluate(&view->lobes, view->wo, wi);
 }
 
 /* Reflects at or passes a microfacet; u chooses. */
@@ -266,25 +248,15 @@ static bool choose(const lobes *l, assay_vec3 wo, double u_lobe, double u1, doub
     return choose_at_facet(l, wo, h, u, choice);
 }
 
-bool assay_metallic_roughness_choose(const assay_bsdf *bsdf, bool back, assay_vec3 wo,
-                                     double u_lobe, double u1, double u2,
-                                     assay_bsdf_choice *choice_out)
+bool assay_metallic_roughness_choose(const assay_bsdf_view *view, double u_lobe, double u1,
+                                     double u2, assay_bsdf_choice *choice_out)
 {
-    const lobes l = lobes_of(bsdf, back, wo.z);
-    if (!choose(&l, wo, u_lobe, u1, u2, choice_out) || !(fabs(choice_out->wi.z) >= ASSAY_HORIZON)) {
+    if (!choose(&view->lobes, view->wo, u_lobe, u1, u2, choice_out) ||
+        !(fabs(choice_out->wi.z) >= ASSAY_HORIZON)) {
         return false;
     }
     if (!choice_out->specular) {
-        choice_out->f = evaluate(&l, wo, choice_out->wi);
+        choice_out->f = evaluate(&view->lobes, view->wo, choice_out->wi);
     }
     return true;
-}
-
-bool assay_metallic_roughness_is_specular(const assay_bsdf *bsdf)
-{
-    lobes l;
-    base_of(bsdf, &l);
-    const bool facets =
-        l.metallic > 0.0 || (!l.matched && (l.f90 > 0.0 || l.transmits || l.refracts));
-    return rgb_is_black(l.diffuse) && (l.smooth || !facets);
 }

@@ -19,12 +19,10 @@ typedef struct {
     assay_bsdf_value f;
 } assay_bsdf_choice;
 
-assay_bsdf_value assay_metallic_roughness_evaluate(const assay_bsdf *bsdf, bool back, assay_vec3 wo,
-                                                   assay_vec3 wi);
-bool             assay_metallic_roughness_choose(const assay_bsdf *bsdf, bool back, assay_vec3 wo,
-                                                 double u_lobe, double u1, double u2,
-                                                 assay_bsdf_choice *choice_out);
-bool             assay_metallic_roughness_is_specular(const assay_bsdf *bsdf);
+void             assay_metallic_roughness_view(assay_bsdf_view *view);
+assay_bsdf_value assay_metallic_roughness_evaluate(const assay_bsdf_view *view, assay_vec3 wi);
+bool assay_metallic_roughness_choose(const assay_bsdf_view *view, double u_lobe, double u1,
+                                     double u2, assay_bsdf_choice *choice_out);
 
 assay_bsdf_value assay_phong_evaluate(const assay_bsdf *bsdf, assay_vec3 wo, assay_vec3 wi);
 assay_vec3       assay_phong_choose(const assay_bsdf *bsdf, assay_vec3 wo, double u_lobe, double u1,

@@ -82,17 +82,18 @@ static bool draw_light(path_walk *walk, const assay_vertex *vertex, assay_light_
 }
 
 /* What the vertex scatters of the light that was drawn. */
-static void add_drawn_light(path_walk *walk, const assay_vertex *vertex, int bounce,
+static void add_drawn_light(path_walk *walk, const assay_vertex *vertex,
+                            const assay_bsdf_view *view, int bounce,
                             const assay_light_sample *light)
 {
-    if (assay_bsdf_is_specular(&vertex->bsdf)) {
+    if (view->specular) {
         return;
     }
     const assay_vec3 wi = frame3_to_local(&vertex->frame, light->direction);
     if (!sides_agree(vertex, light->direction, wi.z * vertex->wo_local.z < 0.0)) {
         return;
     }
-    const assay_bsdf_value f = assay_bsdf_evaluate(&vertex->bsdf, vertex->wo_local, wi);
+    const assay_bsdf_value f = assay_bsdf_view_evaluate(view, wi);
     if (rgb_is_black(f.value)) {
         return;
     }
@@ -160,13 +161,13 @@ static bool survives_roulette(path_walk *walk, int bounce)
 }
 
 /* Goes from the vertex to the next one, adding what it finds there.  False where the path ends. */
-static bool follow(path_walk *walk, assay_vertex *vertex, int bounce)
+static bool follow(path_walk *walk, assay_vertex *vertex, const assay_bsdf_view *view, int bounce)
 {
     const double      u_lobe = assay_random_next(walk->random);
     const double      u1     = assay_random_next(walk->random);
     const double      u2     = assay_random_next(walk->random);
     assay_bsdf_sample sample;
-    if (!assay_bsdf_sample_direction(&vertex->bsdf, vertex->wo_local, u_lobe, u1, u2, &sample)) {
+    if (!assay_bsdf_view_sample(view, u_lobe, u1, u2, &sample)) {
         return false;
     }
     const bool       last      = bounce == walk->settings->bounces;
@@ -218,10 +219,11 @@ static void scatter(path_walk *walk, assay_vertex *vertex)
         assay_light_sample light;
         const bool         lit = draws && draw_light(walk, vertex, &light);
         assay_vertex_dress(walk->world, vertex);
+        const assay_bsdf_view view = assay_bsdf_seen_from(&vertex->bsdf, vertex->wo_local);
         if (lit) {
-            add_drawn_light(walk, vertex, bounce, &light);
+            add_drawn_light(walk, vertex, &view, bounce, &light);
         }
-        if (!follow(walk, vertex, bounce)) {
+        if (!follow(walk, vertex, &view, bounce)) {
             return;
         }
     }

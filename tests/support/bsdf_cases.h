@@ -14,6 +14,12 @@ typedef struct {
 int       bsdf_case_count(void);
 bsdf_case bsdf_case_at(int index);
 
+/* Nothing of it can be evaluated, whatever the direction. */
+static inline bool bsdf_is_specular(const assay_bsdf *bsdf)
+{
+    return assay_bsdf_seen_from(bsdf, vec3(0.0, 0.0, 1.0)).specular;
+}
+
 /* The same with white base colour (Phong, Ward: diffuse + specular colour = 1). */
 assay_bsdf bsdf_whitened(assay_bsdf bsdf);
 

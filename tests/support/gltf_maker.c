@@ -285,9 +285,9 @@ assay_scene *gltf_load(gltf_maker *maker, assay_context *context)
     return scene;
 }
 
-assay_status gltf_load_text(assay_context *context, const char *text, assay_scene **scene_out)
+assay_status gltf_load_text(assay_context *context, const char *json, assay_scene **scene_out)
 {
-    return assay_scene_load_memory(context, (const uint8_t *)text, strlen(text), "test.gltf", NULL,
+    return assay_scene_load_memory(context, (const uint8_t *)json, strlen(json), "test.gltf", NULL,
                                    NULL, scene_out);
 }
 

@@ -178,7 +178,7 @@ static void expect_caught(const char *name, double (*mutate)(double, assay_vec3,
     for (int i = 0; furnace_at(i, &c, &f); i++) {
         if (strcmp(c.name, name) == 0 && i % 12 == 4) {
             f.mutate                   = mutate;
-            const statistics_mean mean = sampled(&f, 1, 10 * DRAWS);
+            const statistics_mean mean = sampled(&f, 1, 40 * DRAWS);
             assert_false(agree(quadrature(&f, c.width, 1e-6), &mean));
             f.mutate = NULL;
             assert_true(agree(quadrature(&f, c.width, 1e-6), &mean));
@@ -222,7 +222,7 @@ static void test_exact(void **state)
             assert_near(s.weight.b, 0.25, 1e-16);
         }
         f.bsdf.base_color = rgb_grey(1.0);
-        const bool smooth = assay_bsdf_is_specular(&f.bsdf) && f.bsdf.metallic != 0.3;
+        const bool smooth = bsdf_is_specular(&f.bsdf) && f.bsdf.metallic != 0.3;
         if (smooth) { /* metal, thin wall and solid: all light is scattered, to rounding */
             assert_near(specular_albedo(&f), 1.0, 1e-14);
         }

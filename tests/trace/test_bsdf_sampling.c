@@ -205,7 +205,7 @@ static void check_sample(const test_point *point, const assay_bsdf_sample *sampl
         assert_true(sample->pdf <= 1.0 + 1e-15);
         return;
     }
-    assert_false(assay_bsdf_is_specular(&point->s.bsdf));
+    assert_false(bsdf_is_specular(&point->s.bsdf));
     const assay_bsdf_value f = assay_bsdf_evaluate(&point->s.bsdf, wo, sample->wi);
     assert_near(f.pdf, sample->pdf, 1e-10 * sample->pdf);
     assert_near(f.value.r / f.pdf, sample->weight.r, 1e-10 * sample->weight.r);
@@ -230,7 +230,7 @@ static void test_parts(void **state)
             }
         }
         assert_true(counts.samples > 0);
-        assert_true(!assay_bsdf_is_specular(&point.s.bsdf) || counts.specular == counts.samples);
+        assert_true(!bsdf_is_specular(&point.s.bsdf) || counts.specular == counts.samples);
     }
 }
 
