@@ -1,0 +1,84 @@
+/* hemisphere.h - what is seen from a point, in M x N cells of its hemisphere, and what follows.
+ *
+ * Cell (j, k): stratum j of M in theta, counted from the pole, and k of N in phi.  Local frame: z
+ * is the normal.  Two stratifications [gautron06] 2.2.5, FORMULAS in docs/methods/
+ * irradiance-cache.md:
+ *
+ *     COSINE    sin^2 theta = (j + u1) / M      E = pi / (M N) sum of L
+ *     UNIFORM   cos theta = 1 - (j + u1) / M    E = 2 pi / (M N) sum of L cos theta
+ *
+ * and phi = 2 pi (k + u2) / N for both. */
+#ifndef ASSAY_GATHER_HEMISPHERE_H
+#define ASSAY_GATHER_HEMISPHERE_H
+
+#include "assay/basis.h"
+#include "math/frame.h"
+
+typedef enum { ASSAY_STRATA_COSINE, ASSAY_STRATA_UNIFORM } assay_strata;
+
+typedef struct {
+    int          theta, phi; /* M, N: 2 ... ASSAY_STRATA_MAX each                    */
+    assay_strata strata;
+    bool         jitter; /* directions at random places of the cells, else at their centres */
+} assay_hemisphere_layout;
+
+#define ASSAY_STRATA_MAX 4096
+
+/* What one direction sees. */
+typedef struct {
+    assay_rgb  radiance;   /* W/(m2 sr), finite, >= 0                                          */
+    double     distance;   /* m, > 0; INFINITY where nothing is hit                            */
+    assay_vec3 direction;  /* unit, local                                                      */
+    assay_vec3 hit_normal; /* unit, local: geometric normal of what is hit, towards the viewer;
+                              0 where nothing is                                               */
+} assay_cell;
+
+typedef struct {
+    assay_hemisphere_layout layout;
+    assay_cell             *cells; /* [j * phi + k] */
+} assay_hemisphere;
+
+/* Cells zeroed.  Errors: ARGUMENT (strata outside 2 ... ASSAY_STRATA_MAX), MEMORY. */
+assay_status assay_hemisphere_create(assay_context *context, const assay_hemisphere_layout *layout,
+                                     assay_hemisphere **hemisphere_out);
+void         assay_hemisphere_destroy(assay_context *context, assay_hemisphere *hemisphere);
+
+/* The local direction of a cell; u1, u2 in [0, 1), 1/2 for its centre. */
+assay_vec3 assay_hemisphere_direction(const assay_hemisphere_layout *layout, int j, int k,
+                                      double u1, double u2);
+
+/* Irradiance, W/m2. */
+assay_rgb assay_hemisphere_irradiance(const assay_hemisphere *hemisphere);
+
+/* Gradients per channel, local frame: E(n') = E + (n x n') . g, W/(m2 rad), g tangential; and the
+ * translational one, W/m3 [ward-heckbert92, as in gautron06 eq. 2.7, absolute]; normal: with a
+ * component along z, too. */
+void assay_hemisphere_rotation_gradient(const assay_hemisphere *hemisphere,
+                                        assay_vec3              gradient_out[3]);
+void assay_hemisphere_translation_gradient(const assay_hemisphere *hemisphere, bool normal,
+                                           assay_vec3 gradient_out[3]);
+
+/* How directions count in the harmonic mean of distances: alike, or by their cosine. */
+typedef enum { ASSAY_MEAN_UNIFORM, ASSAY_MEAN_COSINE } assay_mean_weight;
+
+/* Harmonic mean distance, m: the integral of the weight over the integral of weight / distance;
+ * INFINITY where nothing is seen. */
+double assay_hemisphere_harmonic_mean(const assay_hemisphere *hemisphere, assay_mean_weight weight);
+/* Smallest distance, m; INFINITY where nothing is seen. */
+double assay_hemisphere_nearest(const assay_hemisphere *hemisphere);
+
+/* Coefficients of the incident radiance in a hemispherical orthonormal basis (HSH):
+ * coefficients_out: 3 rows (R, G, B) of count.  Errors: ARGUMENT (kind), MEMORY. */
+assay_status assay_hemisphere_project(const assay_hemisphere *hemisphere, assay_context *context,
+                                      const assay_basis *basis, double *coefficients_out);
+
+/* Their translational gradients, W/(m3 sr) in the local frame, which moves without turning.
+ * POINTS: what is seen are fixed points, their solid angles and directions move; wrong where they
+ * hide one another.  WALLS: the borders of the cells move as the nearer of their neighbours does;
+ * tangential.  gradients_out: 3 rows of count.  Errors: as above. */
+typedef enum { ASSAY_GRADIENT_POINTS, ASSAY_GRADIENT_WALLS } assay_gradient_form;
+assay_status assay_hemisphere_project_gradient(const assay_hemisphere *hemisphere,
+                                               assay_context *context, const assay_basis *basis,
+                                               assay_gradient_form form, assay_vec3 *gradients_out);
+
+#endif
