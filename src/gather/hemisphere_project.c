@@ -75,10 +75,14 @@ static assay_status project_directions(const assay_hemisphere *h, assay_context 
     const size_t columns    = (size_t)h->layout.phi;
     assay_vec3  *directions = assay_allocate(context, columns, sizeof *directions);
     double *values = assay_allocate(context, columns * assay_basis_count(basis), sizeof *values);
-    assay_status status =
-        directions && values ? ASSAY_OK : assay_fail_memory(context, "a projection");
-    for (int j = 0; j < h->layout.theta && status == ASSAY_OK; j++) {
-        status = fail_direction(context, add_directions(h, basis, j, directions, values, sums), j);
+    assay_status status = ASSAY_OK;
+    if (directions && values) {
+        for (int j = 0; j < h->layout.theta && status == ASSAY_OK; j++) {
+            status =
+                fail_direction(context, add_directions(h, basis, j, directions, values, sums), j);
+        }
+    } else {
+        status = assay_fail_memory(context, "a projection");
     }
     assay_release(context, directions);
     assay_release(context, values);
