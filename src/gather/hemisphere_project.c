@@ -2,8 +2,8 @@
  *
  * In UNIFORM strata a cell's solid angle times the functions in the direction that was looked in
  * has no bias.  In COSINE strata the last one covers M^-1/2 of the hemisphere: the unbiased weight,
- * pi / (M N cos theta), has no finite variance there, and the solid angle times the functions in one
- * direction errs by 1 / M and much; so functions are integrated over the cells
+ * pi / (M N cos theta), has no finite variance there, and the solid angle times the functions in
+ * one direction errs by 1 / M and much; so functions are integrated over the cells
  * (docs/methods/gathering.md).
  *
  * Invariant: outputs are copied from sums of our own when all has gone well. */
