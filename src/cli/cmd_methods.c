@@ -46,7 +46,8 @@ static void print_param(const assay_param_desc *p)
         break;
     }
     printf("  %-16s %s%s%s (default %s)\n  %-16s %s%s%s\n", p->name, range, *p->unit ? " " : "",
-           p->unit, *p->default_value ? p->default_value : "none", "", p->summary, *p->source ? " " : "", p->source);
+           p->unit, *p->default_value ? p->default_value : "none", "", p->summary,
+           *p->source ? " " : "", p->source);
 }
 
 static void print_methods(const char *only)

@@ -173,7 +173,7 @@ assay_status assay_params_create(assay_context *context, const assay_param_desc 
         assert(ok && "a default must be legal");
         (void)ok;
     }
-    *params = (assay_params){context, table, values};
+    *params     = (assay_params){context, table, values};
     *params_out = params;
     return ASSAY_OK;
 }

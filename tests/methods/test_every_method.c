@@ -236,8 +236,8 @@ static void check_parameters(const char *method)
         assert_string_equal(assay_params_text(params, p->name), p->default_value);
         assert_true(strlen(p->summary) > 0 && p->summary[strlen(p->summary) - 1] == '.');
         assert_true(takes(params, p->name, p->default_value));
-        for (size_t i = 0;
-             i < sizeof garbage / sizeof garbage[0] && p->type != ASSAY_PARAM_PATH; i++) {
+        for (size_t i = 0; i < sizeof garbage / sizeof garbage[0] && p->type != ASSAY_PARAM_PATH;
+             i++) {
             assert_false(takes(params, p->name, garbage[i]));
             assert_non_null(strstr(assay_context_error(context), p->name));
         }
