@@ -35,8 +35,7 @@ struct assay_irradiance_cache {
     assay_hemisphere               *hemisphere;
     assay_ray_counts               *worker_counts;
     cache_worker                   *workers;
-    uint64_t                        gathered; /* hemispheres so far                  */
-    bool                           *covered;  /* WAVE                                */
+    bool                           *covered; /* WAVE                                */
     assay_irradiance_cache         *next;
     assay_cache_point              *seen; /* what the cells see                      */
 };
@@ -261,7 +260,8 @@ static assay_status gather(assay_irradiance_cache *cache, const assay_gather_sit
                                .radiance      = light_by_path,
                                .user          = cache,
                                .worker_counts = cache->worker_counts};
-    const uint64_t item     = (uint64_t)cache->level << LEVEL_SHIFT | cache->gathered++;
+    const uint64_t item =
+        (uint64_t)cache->level << LEVEL_SHIFT | assay_record_store_count(cache->store);
     if (cache->next) {
         const size_t cells =
             (size_t)cache->settings.layout.theta * (size_t)cache->settings.layout.phi;
@@ -436,7 +436,7 @@ assay_record_store *assay_irradiance_cache_store(assay_irradiance_cache *cache)
     return cache->store;
 }
 
-const assay_irradiance_cache *assay_irradiance_cache_next(const assay_irradiance_cache *cache)
+assay_irradiance_cache *assay_irradiance_cache_next(const assay_irradiance_cache *cache)
 {
     return cache->next;
 }

@@ -68,8 +68,8 @@ assay_status assay_irradiance_cache_look_up(assay_irradiance_cache *cache, assay
                                             assay_rgb *irradiance_out);
 
 /* The first level's records; the next level, or NULL. */
-assay_record_store           *assay_irradiance_cache_store(assay_irradiance_cache *cache);
-const assay_irradiance_cache *assay_irradiance_cache_next(const assay_irradiance_cache *cache);
+assay_record_store     *assay_irradiance_cache_store(assay_irradiance_cache *cache);
+assay_irradiance_cache *assay_irradiance_cache_next(const assay_irradiance_cache *cache);
 /* Look-ups that no record reached, of this level. */
 uint64_t assay_irradiance_cache_unserved(const assay_irradiance_cache *cache);
 /* Rays traced so far, all levels. */

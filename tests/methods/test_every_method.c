@@ -48,7 +48,8 @@ static assay_status make_params(assay_context *context, const char *method, cons
     const assay_status status = assay_method_params(context, method, params_out);
     const struct {
         const char *name, *value;
-    } cheap[] = {{"spp", spp}, {"grid", "4"}, {"nodes", "8"}, {"order", "4"}, {"sh_order", "4"}};
+    } cheap[] = {{"spp", spp},      {"grid", "4"},         {"nodes", "8"},     {"order", "4"},
+                 {"sh_order", "4"}, {"theta_strata", "4"}, {"phi_strata", "8"}};
     for (size_t i = 0; i < sizeof cheap / sizeof cheap[0] && status == ASSAY_OK; i++) {
         if (find(method, cheap[i].name)) {
             assert_int_equal(assay_params_set(*params_out, cheap[i].name, cheap[i].value),

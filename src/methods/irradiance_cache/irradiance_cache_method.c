@@ -5,19 +5,52 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/numerics.h"
+#include "methods/cache_file.h"
 #include "methods/cache_params.h"
 
-static const assay_param_desc PARAMS[] = {ASSAY_CACHE_PARAMS, {0}};
+static const assay_param_desc PARAMS[] = {
+    ASSAY_CACHE_PARAMS,
+    {"cache_in", ASSAY_PARAM_PATH, "", "", 0, 0, NULL,
+     "Folder of a saved cache to begin with, of the same scene and the same light.", ""},
+    {"cache_out", ASSAY_PARAM_PATH, "", "", 0, 0, NULL,
+     "Folder to make for the cache when the image is done.", ""},
+    {0},
+};
 
 typedef struct {
     assay_context                  *context;
     const assay_world              *world;
     assay_irradiance_cache_settings settings;
     assay_cached_image_settings     image;
+    char                           *cache_in, *cache_out; /* or NULL */
     assay_irradiance_cache         *cache;
     assay_cache_point              *points; /* of a wave */
     size_t                          capacity;
 } cache_state;
+
+static void destroy(void *state)
+{
+    cache_state *s = state;
+    if (s) {
+        assay_irradiance_cache_destroy(s->cache);
+        assay_release(s->context, s->cache_in);
+        assay_release(s->context, s->cache_out);
+        assay_release(s->context, s->points);
+        assay_release(s->context, s);
+    }
+}
+
+/* NULL where the parameter is empty. */
+static assay_status copy_path(assay_context *context, const assay_params *params, const char *name,
+                              char **path_out)
+{
+    const char *path = assay_params_text(params, name);
+    if (*path) {
+        *path_out = assay_copy_text(context, path);
+        return *path_out ? ASSAY_OK : assay_fail_memory(context, "a path");
+    }
+    return ASSAY_OK;
+}
 
 static assay_status create(assay_context *context, const assay_params *params, void **state_out)
 {
@@ -25,32 +58,27 @@ static assay_status create(assay_context *context, const assay_params *params, v
     if (!state) {
         return assay_fail_memory(context, "the irradiance cache");
     }
-    state->context = context;
-    const assay_status status =
-        assay_cache_params_read(context, params, &state->settings, &state->image);
+    state->context      = context;
+    assay_status status = assay_cache_params_read(context, params, &state->settings, &state->image);
+    status = status ? status : copy_path(context, params, "cache_in", &state->cache_in);
+    status = status ? status : copy_path(context, params, "cache_out", &state->cache_out);
     if (status != ASSAY_OK) {
-        assay_release(context, state);
+        destroy(state);
         return status;
     }
     *state_out = state;
     return ASSAY_OK;
 }
 
-static void destroy(void *state)
-{
-    cache_state *s = state;
-    if (s) {
-        assay_irradiance_cache_destroy(s->cache);
-        assay_release(s->context, s->points);
-        assay_release(s->context, s);
-    }
-}
-
 static assay_status prepare(void *state, const assay_frame *frame)
 {
     cache_state *s = state;
     s->world       = frame->world;
-    return assay_irradiance_cache_create(frame->world, &s->settings, frame->seed, &s->cache);
+    const assay_status status =
+        assay_irradiance_cache_create(frame->world, &s->settings, frame->seed, &s->cache);
+    return status || !s->cache_in
+               ? status
+               : assay_cache_file_read(frame, &s->settings, s->cache_in, s->cache);
 }
 
 /* ---- light for the image ---- */
@@ -125,17 +153,37 @@ static void report(const cache_state *s)
     }
 }
 
-static assay_status render(void *state, const assay_frame *frame, assay_film *film,
-                           assay_ray_counts *counts)
+static assay_status render_image(cache_state *s, const assay_frame *frame, assay_film *film,
+                                 assay_ray_counts *counts)
 {
-    cache_state             *s     = state;
     const assay_cached_light light = {
         .user = s, .fill = fill, .radiance = radiance, .irradiance = irradiance};
-    const assay_status status = assay_cached_image_render(frame, &s->image, &light, film, counts);
+    assay_status status = assay_cached_image_render(frame, &s->image, &light, film, counts);
     assay_irradiance_cache_count_rays(s->cache, counts);
     if (status == ASSAY_OK) {
         report(s);
     }
+    if (status == ASSAY_OK && frame->dump) {
+        status = assay_cache_file_add(s->context, frame->dump, s->cache);
+    }
+    return status;
+}
+
+static assay_status render(void *state, const assay_frame *frame, assay_film *film,
+                           assay_ray_counts *counts)
+{
+    cache_state  *s      = state;
+    assay_bundle *saved  = NULL;
+    assay_status  status = ASSAY_OK;
+    if (s->cache_out) {
+        status = assay_cache_file_create(frame, &s->settings, s->cache_out, &saved);
+    }
+    status = status ? status : render_image(s, frame, film, counts);
+    if (saved && status == ASSAY_OK) {
+        status = assay_cache_file_add(s->context, saved, s->cache);
+        status = status ? status : assay_bundle_finish(saved);
+    }
+    assay_bundle_destroy(saved);
     return status;
 }
 
