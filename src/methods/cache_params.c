@@ -69,7 +69,7 @@ assay_status assay_cache_params_read(assay_context *context, const assay_params 
     *image_out = (assay_cached_image_settings){
         .path   = path,
         .spp    = (uint32_t)assay_params_int(params, "spp"),
-        .order  = (assay_pixel_order)assay_params_choice(params, "order"),
+        .order  = (assay_pixel_order)assay_params_choice(params, "traversal"),
         .passes = assay_params_int(params, "passes"),
     };
     return ASSAY_OK;

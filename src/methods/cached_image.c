@@ -251,6 +251,9 @@ static assay_status serve_wave(image_job *job, bool fills, bool evaluates, uint6
     if (status == ASSAY_OK && evaluates) {
         status = assay_parallel_part(context, fills ? NULL : "render", chunk_before, chunk_total,
                                      chunks, evaluate, job);
+        if (status == ASSAY_ERR_MEMORY) {
+            return assay_fail_memory(context, "a look into the cache");
+        }
     }
     return status;
 }

@@ -21,6 +21,7 @@ static const int LEVEL_SHIFT = 56;
 typedef struct {
     assay_contributions found;
     uint64_t            unserved;
+    bool                refused; /* memory, inside a gathering */
     char                apart[64];
 } cache_worker;
 
@@ -241,6 +242,7 @@ static assay_rgb light_by_cache(void *user, int cell, assay_vertex *vertex, assa
         const assay_gather_site site = assay_gather_site_of(vertex);
         if (assay_irradiance_cache_look_up(cache->next, site.position, site.frame.z, UINT32_MAX,
                                            worker, &cached) != ASSAY_OK) {
+            cache->workers[worker].refused = true;
             return rgb_grey(NAN);
         }
         cached = rgb_scale(rgb_mul(cached, lambert), ASSAY_INV_PI);
@@ -276,7 +278,13 @@ static assay_status gather(assay_irradiance_cache *cache, const assay_gather_sit
         }
         gatherer.radiance = light_by_cache;
     }
-    return assay_gather(&gatherer, site, item, cache->hemisphere);
+    const assay_status status = assay_gather(&gatherer, site, item, cache->hemisphere);
+    for (int i = 0; status != ASSAY_OK && i < assay_context_threads(cache->context); i++) {
+        if (cache->workers[i].refused) {
+            return assay_fail_memory(cache->context, "a look into the irradiance cache");
+        }
+    }
+    return status;
 }
 
 static void to_world(const assay_frame3 *frame, assay_vec3 gradient[3])
@@ -411,9 +419,6 @@ assay_status assay_irradiance_cache_fill(assay_irradiance_cache *cache, const ch
         fill_wave wave = {cache, points + first, count - first < WAVE ? count - first : WAVE};
         status         = assay_parallel_for(cache->context, NULL, (wave.count + CHUNK - 1) / CHUNK,
                                             look_at_points, &wave);
-        if (status == ASSAY_ERR_MEMORY) {
-            return assay_fail_memory(cache->context, "a look into the irradiance cache");
-        }
         for (size_t i = 0; i < wave.count && status == ASSAY_OK; i++) {
             if (!cache->covered[i]) {
                 status = serve(cache, &wave.points[i]);
@@ -425,6 +430,9 @@ assay_status assay_irradiance_cache_fill(assay_irradiance_cache *cache, const ch
                 limits_out[first + i] = assay_record_store_count(cache->store);
             }
         }
+    }
+    if (status == ASSAY_ERR_MEMORY) {
+        return assay_fail_memory(cache->context, "the irradiance cache");
     }
     return status;
 }
