@@ -100,8 +100,7 @@ void assay_record_store_shrink(assay_record_store *store, uint32_t number, doubl
     assay_record *record = &store->records[number];
     record->radius       = radius;
     if (store->octree) {
-        assay_octree_shrink(store->octree, number, record->position,
-                            assay_record_reach(record, &store->rules));
+        assay_octree_shrink(store->octree, number, assay_record_reach(record, &store->rules));
     }
 }
 
