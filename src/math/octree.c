@@ -137,7 +137,7 @@ static uint32_t home(assay_octree *octree, assay_vec3 place, double reach)
     const double least = 2.0 * reach * octree->inverse;
     uint32_t     node  = 0;
     double       side  = 0.5;
-    for (int bit = DEPTH - 1; bit >= 0 && side >= least; bit--, side *= 0.5) {
+    for (int bit = DEPTH - 1; bit >= 0 && side >= least; bit--) {
         const unsigned child =
             (cell[0] >> bit & 1U) | (cell[1] >> bit & 1U) << 1 | (cell[2] >> bit & 1U) << 2;
         uint32_t next = octree->nodes[node].child[child];
@@ -150,6 +150,7 @@ static uint32_t home(assay_octree *octree, assay_vec3 place, double reach)
             octree->nodes[node].child[child] = next;
         }
         node = next;
+        side *= 0.5;
     }
     return node;
 }

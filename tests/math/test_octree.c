@@ -111,6 +111,42 @@ static void walks_offer_what_reaches(void **state)
     assay_octree_destroy(NULL);
 }
 
+/* On a cube's face, with half the cube's side as reach, and asked at the far end of it: every
+ * rounding of the way into the root's cube would lose some. */
+static void borders_are_inside(void **state)
+{
+    static crowd      c;
+    assay_octree_walk walk;
+    const double      side   = 1.0001 * 4.0; /* of the root; its low corner: */
+    const assay_vec3  corner = vec3(1.0 - 0.5 * side, 3.5 - 0.5 * side, 3.5 - 0.5 * side);
+    assay_random      random = assay_random_start(6, ASSAY_STAGE_TEST, 1, 0);
+    size_t            within = 0;
+    assert_int_equal(assay_octree_create(*state, LOW, HIGH, &c.octree), ASSAY_OK);
+    for (int i = 0; i < ITEMS; i++) {
+        const double cubes = exp2(1.0 + i % 12), unit = side / cubes;
+        const double x = floor(random_in(&random, 0.0, cubes)) * unit;
+        const double y = floor(random_in(&random, 0.0, cubes)) * unit;
+        const double z = floor(random_in(&random, 0.0, cubes)) * unit;
+        c.place[i]     = vec3_add(corner, vec3(x, y, z));
+        c.reach[i]     = 0.5 * unit * (1.0 + (double)(i % 5 - 3) * 0x1p-53);
+        assert_int_equal(assay_octree_add(c.octree, c.place[i], c.reach[i]), ASSAY_OK);
+    }
+    for (int i = 0; i < ITEMS * 6; i++) {
+        const int        k    = i / 6;
+        const double     by   = i % 2 ? c.reach[k] : -c.reach[k];
+        const assay_vec3 axis = vec3(i % 6 / 2 == 0, i % 6 / 2 == 1, i % 6 / 2 == 2);
+        const assay_vec3 p    = vec3_mad(c.place[k], by, axis);
+        const assay_vec3 d    = vec3_sub(p, c.place[k]);
+        const bool       in   = vec3_dot(d, d) <= c.reach[k] * c.reach[k];
+        assay_octree_walk_about(&walk, c.octree, p);
+        finish(&c, &walk);
+        assert_true(c.offered[k] == in);
+        within += in;
+    }
+    assert_true(within > ITEMS * 2);
+    assay_octree_destroy(c.octree);
+}
+
 static void walks_offer_what_is_near(void **state)
 {
     static crowd      c;
@@ -262,6 +298,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(walks_offer_what_reaches, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(borders_are_inside, set_up, tear_down),
         cmocka_unit_test_setup_teardown(walks_offer_what_is_near, set_up, tear_down),
         cmocka_unit_test_setup_teardown(shrunk_items_move_down, set_up, tear_down),
         cmocka_unit_test(shrinking_without_memory),
