@@ -7,10 +7,10 @@
  *
  * An item is in the smallest such cube, so a level's cubes fit the reaches that they serve, and a
  * point is within at most eight grown cubes of a level.  The alternative, an item in every cube
- * that its sphere meets, would make a walk a plain descent, but needs up to eight times the entries.
- * Here a walk meets items in vain: on a plane, with sides of 2 to 4 reaches r, a disc of pi r^2 is
- * sought in the square of two sides, so 5 to 20 in a hundred reach the point.  Therefore nodes keep
- * items in blocks, places and reaches side by side, and most are done with there.
+ * that its sphere meets, would make a walk a plain descent, but needs up to eight times the
+ * entries. Here a walk meets items in vain: on a plane, with sides of 2 to 4 reaches r, a disc of
+ * pi r^2 is sought in the square of two sides, so 5 to 20 in a hundred reach the point.  Therefore
+ * nodes keep items in blocks, places and reaches side by side, and most are done with there.
  *
  * Inside, the root is the unit cube.  Places become whole numbers of 2^-32, and cubes are then
  * prefixes of their bits: which cube holds a place is decided once, exactly, and no cube has a
