@@ -17,7 +17,8 @@ typedef enum {
     ASSAY_STAGE_IRRADIANCE = 2, /* item: pixel; irradiance at the visible point     */
     ASSAY_STAGE_PROBE      = 3, /* item: probe                                      */
     ASSAY_STAGE_LIGHTS     = 4, /* item: triangle; power of textured emitters       */
-    ASSAY_STAGE_PROJECTION = 5  /* item: sample; direction to project a function    */
+    ASSAY_STAGE_PROJECTION = 5, /* item: sample; direction to project a function    */
+    ASSAY_STAGE_GATHER     = 6  /* item: record; sample: cell of its hemisphere     */
 } assay_stage;
 
 typedef struct {
