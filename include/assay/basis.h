@@ -148,6 +148,17 @@ ASSAY_API assay_status assay_basis_project_environment(const assay_basis *basis,
                                                        const assay_image *map, double rotation,
                                                        double *coefficients_out);
 
+/* The same map in a hemispherical basis: the integrals over the hemisphere z >= 0 of a frame, its
+ * texels cut at the horizon.  frame: rotation from the hemisphere's frame to the world's, row by row
+ * (columns: where its x, y and z axes lie in the world); NULL: the world's own.  Along the edges of
+ * texels by Gauss, with nodes that leave less than rounding; what rounding leaves is below 1e-13 of
+ * the largest radiance (docs/methods/basis-accuracy.md).  Errors: ARGUMENT (kind SH, channels
+ * missing), DOMAIN (texels not finite, frame not a rotation, LSOSH beyond order 14), MEMORY,
+ * CANCELLED. */
+ASSAY_API assay_status assay_basis_project_environment_hemisphere(
+    const assay_basis *basis, assay_context *context, const assay_image *map, double rotation,
+    const double *frame, double *coefficients_out);
+
 /* A_l of the clamped cosine, l < order: irradiance = sum of A_l c_l^m Y_l^m(n) [kontkanen] table 1;
  * pi, 2 pi / 3, pi / 4, 0, -pi / 24, ...  Errors: ARGUMENT (order). */
 ASSAY_API assay_status assay_clamped_cosine(int order, double *a_out);
@@ -168,6 +179,10 @@ ASSAY_API double assay_basis_dot(const assay_basis *basis, const double *a, cons
  * towards +x.  rad. */
 ASSAY_API void assay_rotation_from_euler_zyz(double alpha, double beta, double gamma,
                                              double rotation_out[9]);
+
+/* The smallest rotation that takes +z to `pole` (for -z: the half turn about y); its columns are a
+ * frame about that direction.  Errors: DOMAIN (not of unit length). */
+ASSAY_API assay_status assay_rotation_to_pole(assay_vec3 pole, double rotation_out[9]);
 
 /* D with c' = D c: coefficients of f(R^-1 w) from those of f; count * count, block-diagonal
  * (docs/methods/basis-rotation.md).  For SH (any convention) and LSOSH.  R may be off by rounding:

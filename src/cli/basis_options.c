@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "console.h"
+#include "output_check.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -289,13 +290,6 @@ static const char *take(void *user, int index, const char *value)
     return take_counts(r, name, value);
 }
 
-bool cli_basis_parse(const char *command, int count, char **argv, const cli_option *table,
-                     basis_request *request)
-{
-    basis_parser parser = {table, request};
-    return cli_parse(command, count, argv, table, take, NULL, &parser);
-}
-
 bool cli_basis_need(const char *command, bool given, const char *option)
 {
     return given || cli_complain(command, "%s is missing (assay %s --help lists the options)",
@@ -306,4 +300,37 @@ assay_status cli_basis_create(assay_context *context, const basis_request *reque
                               assay_basis_kind kind, long order, assay_basis **basis_out)
 {
     return assay_basis_create(context, kind, (int)order, request->convention, basis_out);
+}
+
+int cli_basis_run(const basis_command *command, int count, char **argv, basis_request request)
+{
+    basis_parser parser = {command->options, &request};
+    cli_console  console;
+    if (!cli_parse(command->name, count, argv, command->options, take, NULL, &parser)) {
+        return CLI_EXIT_USAGE;
+    }
+    if (request.help) {
+        fputs(command->usage, stdout);
+        cli_print_options(command->options);
+        return 0;
+    }
+    if (!command->check(&request)) {
+        return CLI_EXIT_USAGE;
+    }
+    if (request.output) {
+        int code = cli_check_extension(command->name, "--output", request.output,
+                                       command->extension);
+        code     = code ? code : cli_check_file(command->name, request.output);
+        if (code) {
+            return code;
+        }
+    }
+    assay_context *context = cli_console_open(&console, command->name, false, 1, 0);
+    if (!context) {
+        return assay_status_exit_code(ASSAY_ERR_MEMORY);
+    }
+    const int code =
+        cli_console_finish(&console, context, command->run(&console, context, &request));
+    assay_context_destroy(context);
+    return code;
 }

@@ -4,6 +4,7 @@
 #define ASSAY_CLI_BASIS_OPTIONS_H
 
 #include "assay/assay.h"
+#include "console.h"
 #include "options.h"
 
 /* What was asked for; `given` tells which options there were. */
@@ -47,9 +48,19 @@ typedef struct {
         0                                                                                          \
     }
 
-/* Reads a command line.  False after a message. */
-bool cli_basis_parse(const char *command, int count, char **argv, const cli_option *table,
-                     basis_request *request);
+/* What is particular to one command. */
+typedef struct {
+    const char       *name;  /* "basis eval" */
+    const char       *usage; /* what --help says before the options */
+    const cli_option *options;
+    const char       *extension; /* of --output; NULL: there is no such option */
+    /* Whether the request makes sense; false after a message. */
+    bool (*check)(const basis_request *request);
+    assay_status (*run)(cli_console *console, assay_context *context, const basis_request *request);
+} basis_command;
+
+/* Reads a command line, runs the command, and gives the exit code; request: the defaults. */
+int cli_basis_run(const basis_command *command, int count, char **argv, basis_request request);
 
 /* Complains, and answers false, where what a command needs was not given. */
 bool cli_basis_need(const char *command, bool given, const char *option);

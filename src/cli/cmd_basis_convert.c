@@ -63,28 +63,20 @@ static assay_status convert(assay_context *context, const basis_request *r)
     return status;
 }
 
+static bool makes_sense(const basis_request *r)
+{
+    return cli_basis_need(COMMAND, r->has_from, "--from") &&
+        cli_basis_need(COMMAND, r->has_to, "--to") &&
+        cli_basis_need(COMMAND, r->order > 0, "--order");
+}
+
+static const basis_command SELF = {.name    = COMMAND,
+                                   .usage   = "usage: assay basis convert --from hsh --to sh --order N [--to-order N]\n",
+                                   .options = OPTIONS,
+                                   .check   = makes_sense,
+                                   .run     = convert};
+
 int cli_basis_convert(int count, char **argv)
 {
-    basis_request request = {0};
-    cli_console   console;
-    if (!cli_basis_parse(COMMAND, count, argv, OPTIONS, &request)) {
-        return CLI_EXIT_USAGE;
-    }
-    if (request.help) {
-        printf("usage: assay basis convert --from hsh --to sh --order N [--to-order N]\n");
-        cli_print_options(OPTIONS);
-        return 0;
-    }
-    if (!cli_basis_need(COMMAND, request.has_from, "--from") ||
-        !cli_basis_need(COMMAND, request.has_to, "--to") ||
-        !cli_basis_need(COMMAND, request.order > 0, "--order")) {
-        return CLI_EXIT_USAGE;
-    }
-    assay_context *context = cli_console_open(&console, COMMAND, false, 1, 0);
-    if (!context) {
-        return assay_status_exit_code(ASSAY_ERR_MEMORY);
-    }
-    const int code = cli_console_finish(&console, context, convert(context, &request));
-    assay_context_destroy(context);
-    return code;
+    return cli_basis_run(&SELF, count, argv, (basis_request){0});
 }

@@ -145,33 +145,16 @@ static bool makes_sense(const basis_request *r)
            cli_basis_need(COMMAND, r->has_l, "--l") && cli_basis_need(COMMAND, r->has_m, "--m");
 }
 
+static const basis_command SELF = {.name    = COMMAND,
+                                   .usage   = "usage: assay basis plot --basis hsh --l L --m M -o F.png\n"
+               "       assay basis plot --accuracy --lobe L [--max-order N] -o F.png\n"
+               "A function is drawn as |f| in each direction, warm where f > 0, cool where < 0.\n",
+                                   .options = OPTIONS,
+                                   .extension = ".png",
+                                   .check   = makes_sense,
+                                   .run     = draw};
+
 int cli_basis_plot(int count, char **argv)
 {
-    basis_request request = {.order = 10};
-    cli_console   console;
-    if (!cli_basis_parse(COMMAND, count, argv, OPTIONS, &request)) {
-        return CLI_EXIT_USAGE;
-    }
-    if (request.help) {
-        printf("usage: assay basis plot --basis hsh --l L --m M -o F.png\n"
-               "       assay basis plot --accuracy --lobe L [--max-order N] -o F.png\n"
-               "A function is drawn as |f| in each direction, warm where f > 0, cool where < 0.\n");
-        cli_print_options(OPTIONS);
-        return 0;
-    }
-    if (!makes_sense(&request)) {
-        return CLI_EXIT_USAGE;
-    }
-    int check = cli_check_extension(COMMAND, "--output", request.output, ".png");
-    check     = check ? check : cli_check_file(COMMAND, request.output);
-    if (check) {
-        return check;
-    }
-    assay_context *context = cli_console_open(&console, COMMAND, false, 1, 0);
-    if (!context) {
-        return assay_status_exit_code(ASSAY_ERR_MEMORY);
-    }
-    const int code = cli_console_finish(&console, context, draw(&console, context, &request));
-    assay_context_destroy(context);
-    return code;
+    return cli_basis_run(&SELF, count, argv, (basis_request){.order = 10});
 }

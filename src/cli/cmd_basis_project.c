@@ -213,27 +213,14 @@ static bool makes_sense(const basis_request *r)
            cli_basis_need(COMMAND, r->order > 0, "--order");
 }
 
+static const basis_command SELF = {.name    = COMMAND,
+                                   .usage   = "usage: assay basis project --env F --order N\n"
+               "       assay basis project --lobe L --basis NAME --order N\n",
+                                   .options = OPTIONS,
+                                   .check   = makes_sense,
+                                   .run     = report};
+
 int cli_basis_project(int count, char **argv)
 {
-    basis_request request = {.basis = ASSAY_BASIS_SH};
-    cli_console   console;
-    if (!cli_basis_parse(COMMAND, count, argv, OPTIONS, &request)) {
-        return CLI_EXIT_USAGE;
-    }
-    if (request.help) {
-        printf("usage: assay basis project --env F --order N\n"
-               "       assay basis project --lobe L --basis NAME --order N\n");
-        cli_print_options(OPTIONS);
-        return 0;
-    }
-    if (!makes_sense(&request)) {
-        return CLI_EXIT_USAGE;
-    }
-    assay_context *context = cli_console_open(&console, COMMAND, false, 1, 0);
-    if (!context) {
-        return assay_status_exit_code(ASSAY_ERR_MEMORY);
-    }
-    const int code = cli_console_finish(&console, context, report(&console, context, &request));
-    assay_context_destroy(context);
-    return code;
+    return cli_basis_run(&SELF, count, argv, (basis_request){.basis = ASSAY_BASIS_SH});
 }
