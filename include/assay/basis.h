@@ -149,12 +149,12 @@ ASSAY_API assay_status assay_basis_project_environment(const assay_basis *basis,
                                                        double *coefficients_out);
 
 /* The same map in a hemispherical basis: the integrals over the hemisphere z >= 0 of a frame, its
- * texels cut at the horizon.  frame: rotation from the hemisphere's frame to the world's, row by row
- * (columns: where its x, y and z axes lie in the world); NULL: the world's own.  Along the edges of
- * texels by Gauss, with nodes that leave less than rounding; what rounding leaves is below 1e-13 of
- * the largest radiance (docs/methods/basis-accuracy.md).  Errors: ARGUMENT (kind SH, channels
- * missing), DOMAIN (texels not finite, frame not a rotation, LSOSH beyond order 14), MEMORY,
- * CANCELLED. */
+ * texels cut at the horizon.  frame: rotation from the hemisphere's frame to the world's, row by
+ * row (columns: where its x, y and z axes lie in the world); NULL: the world's own.  Along the
+ * edges of texels by Gauss, with nodes that leave less than rounding; what rounding leaves is below
+ * 1e-13 of the largest radiance (docs/methods/basis-accuracy.md).  Errors: ARGUMENT (kind SH,
+ * channels missing), DOMAIN (texels not finite, frame not a rotation, LSOSH beyond order 14),
+ * MEMORY, CANCELLED. */
 ASSAY_API assay_status assay_basis_project_environment_hemisphere(
     const assay_basis *basis, assay_context *context, const assay_image *map, double rotation,
     const double *frame, double *coefficients_out);
@@ -272,6 +272,13 @@ typedef struct {
 
 /* Value for light from wi (unit; 0 below the horizon).  Errors: DOMAIN. */
 ASSAY_API assay_status assay_lobe_value(const assay_lobe *lobe, assay_vec3 wi, double *value_out);
+
+/* Coefficients of a lobe, for SH, too, integrated over the hemisphere, below which it is 0; with
+ * nodes that follow the lobe, however narrow, doubled until no coefficient moves by more than 1e-14
+ * of the largest (1e-11 at the last).  Errors: DOMAIN (the lobe; it does not settle; LSOSH beyond
+ * order 14), MEMORY, CANCELLED. */
+ASSAY_API assay_status assay_basis_project_lobe(const assay_basis *basis, assay_context *context,
+                                                const assay_lobe *lobe, double *coefficients_out);
 
 /* Share of the lobe's energy that the basis captures (eq. 3.32, made well defined: docs/methods/
  * basis-accuracy.md), for orders 1 ... basis order: accuracy_out[order - 1], with the number of

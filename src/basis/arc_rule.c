@@ -38,7 +38,7 @@ static const struct {
 
 struct assay_arc_rule {
     assay_context *context;
-    int            nodes[DISTANCES][LENGTHS];           /* by -log2 of the length, rounded down */
+    int            nodes[DISTANCES][LENGTHS]; /* by -log2 of the length, rounded down */
     double         x[MAX_NODES + 1][MAX_NODES], w[MAX_NODES + 1][MAX_NODES]; /* Gauss [-1, 1] */
 };
 
@@ -99,7 +99,7 @@ static int length_class(double length)
     int class = 0;
     while (class < LENGTHS - 1 && length <= 0.5) {
         length *= 2.0;
-        class++;
+        class ++;
     }
     return class;
 }
@@ -110,14 +110,14 @@ static assay_status take_piece(walk *w, double from, double to, int distance)
     const int             n    = rule->nodes[distance][length_class(to - from)];
     assay_arc_node        nodes[MAX_NODES];
     const bool            by_root = distance == 0, right = w->last - to < from - w->first;
-    const double          end     = right ? w->last : w->first;
-    const double a = by_root ? sqrt(fmax(right ? end - to : from - end, 0.0)) : from;
-    const double b = by_root ? sqrt(right ? end - from : to - end) : to;
+    const double          end = right ? w->last : w->first;
+    const double          a   = by_root ? sqrt(fmax(right ? end - to : from - end, 0.0)) : from;
+    const double          b   = by_root ? sqrt(right ? end - from : to - end) : to;
     for (int i = 0; i < n; i++) {
         /* From a right end t runs backwards. */
-        const int    k = by_root && right ? n - 1 - i : i;
-        const double t = 0.5 * (a + b) + 0.5 * (b - a) * rule->x[n][k];
-        nodes[i].u     = !by_root ? t : right ? end - t * t : end + t * t;
+        const int    k  = by_root && right ? n - 1 - i : i;
+        const double t  = 0.5 * (a + b) + 0.5 * (b - a) * rule->x[n][k];
+        nodes[i].u      = !by_root ? t : right ? end - t * t : end + t * t;
         nodes[i].weight = 0.5 * (b - a) * rule->w[n][k] * (by_root ? 2.0 * t : 1.0);
     }
     return w->take(w->user, w->arc, n, nodes);
@@ -158,11 +158,11 @@ static assay_status walk_over(walk *w, double from, double to)
 
 static assay_status walk_where_above(walk *w, double top, double half)
 {
-    const assay_arc *arc   = w->arc;
-    const double     turn  = assay_floor((arc->from - (top + half)) / ASSAY_TWO_PI) + 1.0;
+    const assay_arc *arc    = w->arc;
+    const double     turn   = assay_floor((arc->from - (top + half)) / ASSAY_TWO_PI) + 1.0;
     assay_status     status = ASSAY_OK;
-    w->crosses             = true;
-    w->below               = ASSAY_TWO_PI - 2.0 * half;
+    w->crosses              = true;
+    w->below                = ASSAY_TWO_PI - 2.0 * half;
     for (int k = 0; k < 3 && status == ASSAY_OK; k++) {
         const double middle = top + (turn + k) * ASSAY_TWO_PI;
         w->first            = middle - half;

@@ -43,13 +43,13 @@ typedef struct {
     /* By function: the twin, and +-1 / m; 0 and l for m = 0. */
     size_t *twin;
     double *factor;
-    int    *zonal;  /* l, or -1                                                               */
-    double *series; /* order rows of SERIES: K of g_l in Legendre polynomials of 2 sqrt(z) - 1 */
-    double *whole;  /* order: F(0)                                                            */
-    double *values; /* MAX_NODES rows of count                                                */
-    double *edge;   /* count: one edge's integrals                                            */
-    double *row, *sum;                        /* CHANNELS rows of count */
-    double *column_angle, *column_cos;        /* width + 1: see area_of_row */
+    int    *zonal;     /* l, or -1                                                               */
+    double *series;    /* order rows of SERIES: K of g_l in Legendre polynomials of 2 sqrt(z) - 1 */
+    double *whole;     /* order: F(0)                                                            */
+    double *values;    /* MAX_NODES rows of count                                                */
+    double *edge;      /* count: one edge's integrals                                            */
+    double *row, *sum; /* CHANNELS rows of count */
+    double *column_angle, *column_cos; /* width + 1: see area_of_row */
     double *column_turns;
 } dome;
 
@@ -132,17 +132,17 @@ static assay_vec3 combine(assay_vec3 a, double s, assay_vec3 b, double t)
 static assay_status take_nodes(void *user, const assay_arc *arc, int count,
                                const assay_arc_node *nodes)
 {
-    dome      *d = user;
+    dome      *d             = user;
     assay_vec3 at[MAX_NODES] = {{0}};
     double     dz[MAX_NODES];
     for (int i = 0; i < count; i++) {
         const assay_sincos u = assay_sincos_radians(nodes[i].u);
         const assay_vec3   p = combine(arc->cosine, u.cos, arc->sine, u.sin);
         const assay_vec3   q = combine(arc->cosine, -u.sin, arc->sine, u.cos);
-        at[i] = (assay_vec3){arc->centre.x + p.x, arc->centre.y + p.y,
-                             fmin(fmax(arc->centre.z + p.z, 0.0), 1.0)};
-        dz[i] = nodes[i].weight * q.z;
-        const double square = at[i].x * at[i].x + at[i].y * at[i].y;
+        at[i]                = (assay_vec3){arc->centre.x + p.x, arc->centre.y + p.y,
+                                            fmin(fmax(arc->centre.z + p.z, 0.0), 1.0)};
+        dz[i]                = nodes[i].weight * q.z;
+        const double square  = at[i].x * at[i].x + at[i].y * at[i].y;
         if (square > 0.0) {
             add_zonal(d, at[i].z, nodes[i].weight * (at[i].x * q.y - at[i].y * q.x) / square);
         }
@@ -197,19 +197,21 @@ static assay_status add_edges(dome *d, int row)
     assay_arc          arc;
     for (int j = 0; j < d->width && status == ASSAY_OK && row > 0; j++) {
         /* Azimuth ascends to the east, as seen on a globe: the row above is on the left hand. */
-        arc    = (assay_arc){combine(d->up, theta.cos, d->up, 0.0),
-                             combine(d->south, theta.sin, d->up, 0.0),
-                             combine(d->east, theta.sin, d->up, 0.0), azimuth(d, j + 1),
-                             azimuth(d, j)};
+        arc = (assay_arc){
+            combine(d->up, theta.cos, d->up, 0.0), combine(d->south, theta.sin, d->up, 0.0),
+            combine(d->east, theta.sin, d->up, 0.0), azimuth(d, j + 1), azimuth(d, j)};
         status = add_edge(d, &arc, start - width + (size_t)j, start + (size_t)j);
     }
     /* To the south: what lies to the east, the column before, is on the left hand. */
     for (int j = 0; j < d->width && status == ASSAY_OK; j++) {
-        const assay_sincos psi = assay_sincos_radians(azimuth(d, j));
+        const assay_sincos psi  = assay_sincos_radians(azimuth(d, j));
         const size_t       east = start + (size_t)(j > 0 ? j - 1 : d->width - 1);
-        arc = (assay_arc){{0.0, 0.0, 0.0}, d->up, combine(d->south, psi.cos, d->east, psi.sin),
-                          polar_angle(d, row), polar_angle(d, row + 1)};
-        status = add_edge(d, &arc, east, start + (size_t)j);
+        arc                     = (assay_arc){{0.0, 0.0, 0.0},
+                                              d->up,
+                                              combine(d->south, psi.cos, d->east, psi.sin),
+                                              polar_angle(d, row),
+                                              polar_angle(d, row + 1)};
+        status                  = add_edge(d, &arc, east, start + (size_t)j);
     }
     return status;
 }
@@ -245,17 +247,17 @@ static void add_areas(dome *d, int row)
     const double y0 = assay_cos(polar_angle(d, row + 1)), y1 = assay_cos(polar_angle(d, row));
     const bool   down = d->up.z < 0.0;
     const double q = fabs(d->up.z), s = sqrt(d->east.z * d->east.z + d->south.z * d->south.z);
-    const double full = 2.0 * cut_area(q, s, -1.0, ASSAY_PI, y0, y1);
+    const double full          = 2.0 * cut_area(q, s, -1.0, ASSAY_PI, y0, y1);
     double       sum[CHANNELS] = {0.0, 0.0, 0.0}, before = 0.0;
     for (int j = 0; j <= d->width; j++) {
         const double p    = d->column_angle[j];
         const double part = cut_area(q, s, d->column_cos[j], fabs(p), y0, y1);
         const double here = d->column_turns[j] * full + (p < 0.0 ? -part : part);
         for (int c = 0; c < CHANNELS && j > 0; c++) {
-            const double  area   = before - here; /* azimuth falls with the column */
-            const double  texel  = (y1 - y0) * ASSAY_TWO_PI / d->width;
-            const double  inside = down ? texel - area : area;
-            const size_t  at     = (size_t)row * (size_t)d->width + (size_t)j - 1;
+            const double area   = before - here; /* azimuth falls with the column */
+            const double texel  = (y1 - y0) * ASSAY_TWO_PI / d->width;
+            const double inside = down ? texel - area : area;
+            const size_t at     = (size_t)row * (size_t)d->width + (size_t)j - 1;
             sum[c] += inside * (double)d->channels[c].data.f32[at];
         }
         before = here;
@@ -273,10 +275,10 @@ static void prepare_columns(dome *d)
     const double sign = d->up.z < 0.0 ? -1.0 : 1.0;
     const double axis = assay_atan2(sign * d->east.z, sign * d->south.z);
     for (int j = 0; j <= d->width; j++) {
-        const double angle  = azimuth(d, j) - axis;
-        d->column_turns[j]  = assay_floor(angle / ASSAY_TWO_PI + 0.5);
-        d->column_angle[j]  = angle - d->column_turns[j] * ASSAY_TWO_PI;
-        d->column_cos[j]    = assay_cos(d->column_angle[j]);
+        const double angle = azimuth(d, j) - axis;
+        d->column_turns[j] = assay_floor(angle / ASSAY_TWO_PI + 0.5);
+        d->column_angle[j] = angle - d->column_turns[j] * ASSAY_TWO_PI;
+        d->column_cos[j]   = assay_cos(d->column_angle[j]);
     }
 }
 
@@ -303,10 +305,9 @@ static assay_status allocate(dome *d)
     const size_t order = (size_t)d->order, columns = (size_t)d->width + 1;
     d->twin   = assay_allocate(d->context, d->count, sizeof *d->twin);
     d->zonal  = assay_allocate(d->context, d->count, sizeof *d->zonal);
-    d->factor = assay_allocate(d->context,
-                               (2 + MAX_NODES + 2 * CHANNELS) * d->count + order * (SERIES + 1) +
-                                   3 * columns,
-                               sizeof(double));
+    d->factor = assay_allocate(
+        d->context, (2 + MAX_NODES + 2 * CHANNELS) * d->count + order * (SERIES + 1) + 3 * columns,
+        sizeof(double));
     if (!d->twin || !d->zonal || !d->factor) {
         return assay_fail_memory(d->context, "the projection of an environment map");
     }
@@ -379,8 +380,7 @@ static assay_status prepare(dome *d, const assay_basis *basis, const assay_image
                           "a map is projected to a hemispherical basis, with a finite rotation");
     }
     if (!assay_euler_zyz_split(r, &split)) {
-        return assay_fail(d->context, ASSAY_ERR_DOMAIN,
-                          "the hemisphere's frame is not a rotation");
+        return assay_fail(d->context, ASSAY_ERR_DOMAIN, "the hemisphere's frame is not a rotation");
     }
     place_axes(d, r);
     assay_status status = assay_projection_check_map(d->context, map, d->channels);

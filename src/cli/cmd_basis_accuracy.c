@@ -35,8 +35,9 @@ static void print_table(const basis_request *r, const accuracy_table *table)
         printf("%5ld", n + 1);
         for (int k = 0; k < ASSAY_BASIS_KIND_COUNT; k++) {
             if (is_wanted(r, k)) {
-                printf(r->hex ? " %23a (%4zu)" : " %13.9f (%4zu)", table->values[k][n],
-                       table->counts[k][n]);
+                const double value = table->values[k][n];
+                printf(r->hex ? " %23a" : value < 5e-10 ? " %13.3g" : " %13.9f", value);
+                printf(" (%4zu)", table->counts[k][n]);
             }
         }
         printf("\n");
@@ -119,11 +120,12 @@ static bool makes_sense(const basis_request *r)
     return cli_basis_need(COMMAND, r->has_lobe, "--lobe");
 }
 
-static const basis_command SELF = {.name    = COMMAND,
-                                   .usage   = "usage: assay basis accuracy --lobe phong:5@60|ward:0.2,0.5@30 [--basis NAME]\n",
-                                   .options = OPTIONS,
-                                   .check   = makes_sense,
-                                   .run     = measure};
+static const basis_command SELF = {
+    .name    = COMMAND,
+    .usage   = "usage: assay basis accuracy --lobe phong:5@60|ward:0.2,0.5@30 [--basis NAME]\n",
+    .options = OPTIONS,
+    .check   = makes_sense,
+    .run     = measure};
 
 int cli_basis_accuracy(int count, char **argv)
 {

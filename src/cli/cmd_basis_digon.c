@@ -1,4 +1,5 @@
 /* cmd_basis_digon.c - `assay basis digon`. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -35,16 +36,21 @@ static assay_status make(assay_context *context, const basis_request *r)
 
 static bool makes_sense(const basis_request *r)
 {
+    if (r->has_beta && !(fabs(r->beta_deg) <= 180.0)) {
+        return cli_complain(COMMAND, "--beta-deg %.10g: -180 to 180 degrees are possible",
+                            r->beta_deg);
+    }
     return cli_basis_need(COMMAND, r->order > 0, "--order") &&
-        cli_basis_need(COMMAND, r->has_beta, "--beta-deg");
+           cli_basis_need(COMMAND, r->has_beta, "--beta-deg");
 }
 
-static const basis_command SELF = {.name    = COMMAND,
-                                   .usage   = "usage: assay basis digon --order N --beta-deg B\n"
+static const basis_command SELF = {
+    .name    = COMMAND,
+    .usage   = "usage: assay basis digon --order N --beta-deg B\n"
                "The matrix, in HSH, that sets to zero what a turn by B moves below the horizon.\n",
-                                   .options = OPTIONS,
-                                   .check   = makes_sense,
-                                   .run     = make};
+    .options = OPTIONS,
+    .check   = makes_sense,
+    .run     = make};
 
 int cli_basis_digon(int count, char **argv)
 {

@@ -101,12 +101,13 @@ static bool makes_sense(const basis_request *r)
     return true;
 }
 
-static const basis_command SELF = {.name    = COMMAND,
-                                   .usage   = "usage: assay basis rotate --basis sh --order N --euler-zyz-deg A,B,G\n"
+static const basis_command SELF = {
+    .name    = COMMAND,
+    .usage   = "usage: assay basis rotate --basis sh --order N --euler-zyz-deg A,B,G\n"
                "       assay basis rotate --basis hsh --via WAY --order N --beta-deg B\n",
-                                   .options = OPTIONS,
-                                   .check   = makes_sense,
-                                   .run     = rotate};
+    .options = OPTIONS,
+    .check   = makes_sense,
+    .run     = rotate};
 
 int cli_basis_rotate(int count, char **argv)
 {

@@ -5,7 +5,6 @@
 #include "basis_options.h"
 #include "basis_print.h"
 #include "console.h"
-#include "output_check.h"
 
 static const char       COMMAND[] = "basis table";
 static const cli_option OPTIONS[] = {
@@ -97,16 +96,20 @@ static assay_status make(assay_context *context, const basis_request *r)
 
 static bool makes_sense(const basis_request *r)
 {
+    if (r->output && (r->json || r->hex)) {
+        return cli_complain(COMMAND, "--json and --hex are of what is printed, not of --output");
+    }
     return cli_basis_need(COMMAND, r->has_basis, "--basis") &&
-        cli_basis_need(COMMAND, r->order > 0, "--order");
+           cli_basis_need(COMMAND, r->order > 0, "--order");
 }
 
-static const basis_command SELF = {.name    = COMMAND,
-                                   .usage   = "usage: assay basis table --basis NAME --order N [--json|--hex|-o F.npy]\n",
-                                   .options = OPTIONS,
-                                   .extension = ".npy",
-                                   .check   = makes_sense,
-                                   .run     = make};
+static const basis_command SELF = {
+    .name      = COMMAND,
+    .usage     = "usage: assay basis table --basis NAME --order N [--json|--hex|-o F.npy]\n",
+    .options   = OPTIONS,
+    .extension = ".npy",
+    .check     = makes_sense,
+    .run       = make};
 
 int cli_basis_table(int count, char **argv)
 {

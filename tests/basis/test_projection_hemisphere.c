@@ -76,8 +76,8 @@ static void multiply(const double *a, const double *b, double *out)
 /* About the world's y axis: z goes towards x. */
 static void spin(double angle, const double *frame, double *out)
 {
-    const double about_y[9] = {cos(angle), 0.0, sin(angle), 0.0, 1.0, 0.0,
-                               -sin(angle), 0.0, cos(angle)};
+    const double about_y[9] = {cos(angle), 0.0,         sin(angle), 0.0,       1.0,
+                               0.0,        -sin(angle), 0.0,        cos(angle)};
     multiply(about_y, frame, out);
 }
 
@@ -97,11 +97,11 @@ static void halves_are_digons(void **state)
     }
     for (size_t k = 0; k < sizeof betas / sizeof betas[0]; k++) {
         const int    order = k == 0 ? HIGH : 6, count = order * order;
-        const double b     = betas[k];
-        assay_basis *hsh   = make_basis(*state, ASSAY_BASIS_HSH, order);
+        const double b   = betas[k];
+        assay_basis *hsh = make_basis(*state, ASSAY_BASIS_HSH, order);
         assert_int_equal(assay_hsh_digon(hsh, *state, b, matrix), ASSAY_OK);
         /* Local axes in the world, as columns: R (-sin b, 0, cos b) = +y, then +x. */
-        const double up[9] = {0.0, 1.0, 0.0, -sin(b), 0.0, cos(b), cos(b), 0.0, sin(b)};
+        const double up[9]    = {0.0, 1.0, 0.0, -sin(b), 0.0, cos(b), cos(b), 0.0, sin(b)};
         const double aside[9] = {-sin(b), 0.0, cos(b), cos(b), 0.0, sin(b), 0.0, 1.0, 0.0};
         double       frame[9];
         double       worst = 0.0;
@@ -110,7 +110,7 @@ static void halves_are_digons(void **state)
             project(hsh, *state, half ? right : upper, 0.0, half ? aside : frame, out);
             for (int i = 0; i < count; i++) {
                 const double expected = 2.0 * sqrt(2.0 * PI) * matrix[i * count];
-                worst = fmax(worst, fabs(out[count + i] - expected));
+                worst                 = fmax(worst, fabs(out[count + i] - expected));
                 assert_near(out[i], 0.0, 0.0);
             }
         }
@@ -126,13 +126,13 @@ static void fill(assay_channel c[3], int texels)
 {
     uint32_t seed = 7;
     for (int i = 0; i < 3 * texels; i++) {
-        seed                          = seed * 1664525u + 1013904223u;
+        seed                               = seed * 1664525u + 1013904223u;
         c[i / texels].data.f32[i % texels] = (float)(seed >> 8) * 0x1p-24f;
     }
 }
 
-static const assay_vec3 poles[] = {{0.0, 0.0, 1.0},   {0.0, 1.0, 0.0},    {0.0, -1.0, 0.0},
-                                   {1.0, 0.0, 0.0},   {0.6, 0.0, -0.8},   {0.36, 0.48, 0.8},
+static const assay_vec3 poles[] = {{0.0, 0.0, 1.0},    {0.0, 1.0, 0.0},     {0.0, -1.0, 0.0},
+                                   {1.0, 0.0, 0.0},    {0.6, 0.0, -0.8},    {0.36, 0.48, 0.8},
                                    {0.0, -0.28, 0.96}, {-0.48, -0.6, 0.64}, {0.0, 0.0, -1.0}};
 enum { POLES = sizeof poles / sizeof poles[0] };
 
@@ -237,15 +237,14 @@ static void texels_are_patches(void **state)
     enum { W = 5, H = 3, FINER = 7 };
     static double coarse[3 * HIGH * HIGH], fine[3 * HIGH * HIGH];
     assay_channel a[3], b[3];
-    assay_image  *one  = make_map(*state, W, H, a);
-    assay_image  *many = make_map(*state, W * FINER, H * FINER, b);
-    assay_basis  *hsh  = make_basis(*state, ASSAY_BASIS_HSH, HIGH);
+    assay_image  *one   = make_map(*state, W, H, a);
+    assay_image  *many  = make_map(*state, W * FINER, H * FINER, b);
+    assay_basis  *hsh   = make_basis(*state, ASSAY_BASIS_HSH, HIGH);
     double        worst = 0.0;
     fill(a, W * H);
     for (int i = 0; i < W * H * FINER * FINER; i++) {
         for (int c = 0; c < 3; c++) {
-            b[c].data.f32[i] =
-                a[c].data.f32[i / (W * FINER) / FINER * W + i % (W * FINER) / FINER];
+            b[c].data.f32[i] = a[c].data.f32[i / (W * FINER) / FINER * W + i % (W * FINER) / FINER];
         }
     }
     for (int p = 0; p < POLES; p++) {
@@ -277,9 +276,9 @@ static void a_horizon_beside_an_edge(void **state)
         double frame[9];
         assert_int_equal(assay_rotation_to_pole((assay_vec3){0.0, 1.0, 0.0}, frame), ASSAY_OK);
         project(hsh, *state, map, 0.1, frame, at);
-        assert_int_equal(assay_rotation_to_pole((assay_vec3){0.6 * tilt, cos(tilt), 0.8 * tilt},
-                                                frame),
-                         ASSAY_OK);
+        assert_int_equal(
+            assay_rotation_to_pole((assay_vec3){0.6 * tilt, cos(tilt), 0.8 * tilt}, frame),
+            ASSAY_OK);
         project(hsh, *state, map, 0.1, frame, beside);
         for (int i = 0; i < 3 * COUNT; i++) {
             assert_near(beside[i], at[i], 60.0 * tilt + 1e-13);
@@ -293,7 +292,7 @@ static void rotation_to_a_pole(void **state)
 {
     (void)state;
     for (int p = 0; p < POLES; p++) {
-        double    r[9];
+        double       r[9];
         const double v[3] = {poles[p].x, poles[p].y, poles[p].z};
         assert_int_equal(assay_rotation_to_pole(poles[p], r), ASSAY_OK);
         for (int i = 0; i < 9; i++) {
@@ -319,10 +318,10 @@ static void bad_input(void **state)
 {
     static const double mirror[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, -1.0};
     assay_channel       c[3];
-    assay_image        *map = make_map(*state, 2, 2, c);
-    assay_basis        *sh = make_basis(*state, ASSAY_BASIS_SH, 2);
-    assay_basis        *hsh = make_basis(*state, ASSAY_BASIS_HSH, 2);
-    assay_basis        *lsosh = make_basis(*state, ASSAY_BASIS_LSOSH, 20);
+    assay_image        *map          = make_map(*state, 2, 2, c);
+    assay_basis        *sh           = make_basis(*state, ASSAY_BASIS_SH, 2);
+    assay_basis        *hsh          = make_basis(*state, ASSAY_BASIS_HSH, 2);
+    assay_basis        *lsosh        = make_basis(*state, ASSAY_BASIS_LSOSH, 20);
     double              out[3 * 400] = {4.0};
     assert_int_equal(assay_basis_project_environment_hemisphere(sh, *state, map, 0.0, NULL, out),
                      ASSAY_ERR_ARGUMENT);
@@ -332,7 +331,7 @@ static void bad_input(void **state)
                      ASSAY_ERR_DOMAIN);
     assert_int_equal(assay_basis_project_environment_hemisphere(lsosh, *state, map, 0.0, NULL, out),
                      ASSAY_ERR_DOMAIN);
-    c[2].data.f32[1]     = NAN;
+    c[2].data.f32[1] = NAN;
     assert_int_equal(assay_basis_project_environment_hemisphere(hsh, *state, map, 0.0, NULL, out),
                      ASSAY_ERR_DOMAIN);
     assert_near(out[0], 4.0, 0.0);
@@ -350,15 +349,18 @@ static assay_status project_once(assay_context *context, void *user)
     double        out[3 * 9];
     assay_status  status = assay_image_create(context, 2, 2, &map);
     for (int k = 0; k < 3 && !status; k++) {
-        status = assay_image_add_channel(map, k == 0 ? "R" : k == 1 ? "G" : "B",
+        status = assay_image_add_channel(map,
+                                         k == 0   ? "R"
+                                         : k == 1 ? "G"
+                                                  : "B",
                                          ASSAY_CHANNEL_FLOAT, &c[k]);
     }
-    status = status ? status
-                    : assay_basis_create(context, ASSAY_BASIS_LSOSH, 3, ASSAY_CONVENTION_THESIS,
-                                         &basis);
-    status = status ? status
-                    : assay_basis_project_environment_hemisphere(basis, context, map, 0.0, NULL,
-                                                                 out);
+    status =
+        status ? status
+               : assay_basis_create(context, ASSAY_BASIS_LSOSH, 3, ASSAY_CONVENTION_THESIS, &basis);
+    status = status
+                 ? status
+                 : assay_basis_project_environment_hemisphere(basis, context, map, 0.0, NULL, out);
     assay_basis_destroy(basis);
     assay_image_destroy(map);
     (void)user;
