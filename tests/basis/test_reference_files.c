@@ -21,8 +21,8 @@ typedef struct {
 
 /* Degree and order conventions of each: refdata/README.md. */
 static const shape shapes[] = {
-    {"accuracy_phong", 2, 6, 4 * 10},
-    {"accuracy_ward", 2, 6, 3 * 10},
+    {"accuracy_phong", 2, 9, 4 * 10},
+    {"accuracy_ward", 2, 9, 3 * 10},
     {"clamped_cosine", 1, 2, 33},
     {"conversion", 3, 2,
      10 * 16 + 2 * (9 * 15 + 8 * 14 + 7 * 13 + 6 * 12 + 5 * 11 + 4 * 10 + 3 * 9 + 2 * 8 + 1 * 7)},
