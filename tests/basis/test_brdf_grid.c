@@ -10,25 +10,10 @@
 #include <string.h>
 
 #include "assay/basis.h"
-#include "support/failing_context.h"
+#include "support/basis_fixture.h"
 #include "support/near.h"
 
 enum { ORDER = 3, COUNT = ORDER * ORDER, SIDE = 8 };
-
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
 
 static assay_basis *make_hsh(assay_context *context)
 {
@@ -212,11 +197,13 @@ static void bad_input(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(bilinear_functions_come_back, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(texels_are_projections, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(lookup_approaches_the_projection, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(threads_change_nothing, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(bad_input, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bilinear_functions_come_back, basis_set_up,
+                                        basis_tear_down),
+        cmocka_unit_test_setup_teardown(texels_are_projections, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(lookup_approaches_the_projection, basis_set_up,
+                                        basis_tear_down),
+        cmocka_unit_test_setup_teardown(threads_change_nothing, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(bad_input, basis_set_up, basis_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

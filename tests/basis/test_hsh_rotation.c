@@ -13,6 +13,7 @@
 
 #include "assay/basis.h"
 #include "core/numerics.h"
+#include "support/basis_fixture.h"
 #include "support/failing_context.h"
 #include "support/hsh_matrix.h"
 #include "support/near.h"
@@ -22,20 +23,6 @@ static const double PI = ASSAY_PI;
 static const assay_hsh_rotation_options EXACT = {.way = ASSAY_HSH_EXACT};
 
 static assay_context *context_of(void **state) { return *state; }
-
-static int set_up(void **state)
-{
-    assay_context *context = NULL;
-    assert_int_equal(assay_context_create(NULL, &context), ASSAY_OK);
-    *state = context;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assay_context_destroy(*state);
-    return 0;
-}
 
 /* ---- the second method ---- */
 
@@ -395,5 +382,5 @@ int main(void)
         cmocka_unit_test(test_any_rotation),  cmocka_unit_test(test_refusals),
         cmocka_unit_test(test_small_turns),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, basis_set_up, basis_tear_down);
 }

@@ -11,26 +11,12 @@
 
 #include "assay/basis.h"
 #include "math/quadrature.h"
+#include "support/basis_fixture.h"
 #include "support/failing_context.h"
 #include "support/near.h"
 
 enum { ORDER = 8, COUNT = ORDER * ORDER, HIGH = 33 };
 static const double PI = 3.14159265358979323846;
-
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
 
 static assay_image *make_map(assay_context *context, int width, int height, assay_channel out[3])
 {
@@ -45,14 +31,6 @@ static assay_image *make_map(assay_context *context, int width, int height, assa
         assert_true(assay_image_find_channel(map, names[c], &out[c]));
     }
     return map;
-}
-
-static assay_basis *make_basis(assay_context *context, assay_basis_kind kind, int order)
-{
-    assay_basis *basis = NULL;
-    assert_int_equal(assay_basis_create(context, kind, order, ASSAY_CONVENTION_THESIS, &basis),
-                     ASSAY_OK);
-    return basis;
 }
 
 static void project(const assay_basis *basis, assay_context *context, const assay_image *map,
@@ -98,7 +76,7 @@ static void halves_are_digons(void **state)
     for (size_t k = 0; k < sizeof betas / sizeof betas[0]; k++) {
         const int    order = k == 0 ? HIGH : 6, count = order * order;
         const double b   = betas[k];
-        assay_basis *hsh = make_basis(*state, ASSAY_BASIS_HSH, order);
+        assay_basis *hsh = basis_make(*state, ASSAY_BASIS_HSH, order);
         assert_int_equal(assay_hsh_digon(hsh, *state, b, matrix), ASSAY_OK);
         /* Local axes in the world, as columns: R (-sin b, 0, cos b) = +y, then +x. */
         const double up[9]    = {0.0, 1.0, 0.0, -sin(b), 0.0, cos(b), cos(b), 0.0, sin(b)};
@@ -142,8 +120,8 @@ static void both_halves_make_the_sphere(void **state)
 {
     assay_channel c[3];
     assay_image  *map = make_map(*state, 12, 7, c);
-    assay_basis  *esh = make_basis(*state, ASSAY_BASIS_ESH, HIGH);
-    assay_basis  *sh  = make_basis(*state, ASSAY_BASIS_SH, HIGH);
+    assay_basis  *esh = basis_make(*state, ASSAY_BASIS_ESH, HIGH);
+    assay_basis  *sh  = basis_make(*state, ASSAY_BASIS_SH, HIGH);
     static double one[3 * HIGH * HIGH], other[3 * HIGH * HIGH], whole[3 * HIGH * HIGH];
     static double turned[3 * HIGH * HIGH], matrix[HIGH * HIGH * HIGH * HIGH];
     const size_t  count = assay_basis_count(esh);
@@ -188,7 +166,7 @@ static void every_kind_on_a_quarter(void **state)
     assay_gauss_legendre_on(0.0, 0.5 * PI, U, u, uw);
     assay_gauss_legendre_on(-0.5 * PI, 0.5 * PI, P, phi, pw);
     for (int kind = ASSAY_BASIS_HSH; kind < ASSAY_BASIS_LSOSH; kind++) {
-        assay_basis *basis = make_basis(*state, (assay_basis_kind)kind, ORDER);
+        assay_basis *basis = basis_make(*state, (assay_basis_kind)kind, ORDER);
         const size_t count = assay_basis_count(basis);
         double       out[3 * COUNT], expected[COUNT] = {0.0}, values[COUNT], worst = 0.0;
         for (int i = 0; i < U * P; i++) {
@@ -216,7 +194,7 @@ static void least_squares_of_a_constant(void **state)
 {
     assay_channel c[3];
     assay_image  *map   = make_map(*state, 5, 4, c);
-    assay_basis  *basis = make_basis(*state, ASSAY_BASIS_LSOSH, 6);
+    assay_basis  *basis = basis_make(*state, ASSAY_BASIS_LSOSH, 6);
     double        frame[9], out[3 * 36];
     for (int i = 0; i < 20; i++) {
         c[0].data.f32[i] = 1.0f;
@@ -239,7 +217,7 @@ static void texels_are_patches(void **state)
     assay_channel a[3], b[3];
     assay_image  *one   = make_map(*state, W, H, a);
     assay_image  *many  = make_map(*state, W * FINER, H * FINER, b);
-    assay_basis  *hsh   = make_basis(*state, ASSAY_BASIS_HSH, HIGH);
+    assay_basis  *hsh   = basis_make(*state, ASSAY_BASIS_HSH, HIGH);
     double        worst = 0.0;
     fill(a, W * H);
     for (int i = 0; i < W * H * FINER * FINER; i++) {
@@ -270,7 +248,7 @@ static void a_horizon_beside_an_edge(void **state)
     static double at[3 * COUNT], beside[3 * COUNT];
     assay_channel c[3];
     assay_image  *map = make_map(*state, 6, 4, c);
-    assay_basis  *hsh = make_basis(*state, ASSAY_BASIS_HSH, ORDER);
+    assay_basis  *hsh = basis_make(*state, ASSAY_BASIS_HSH, ORDER);
     fill(c, 24);
     for (double tilt = 1e-3; tilt > 1e-18; tilt *= 1e-3) {
         double frame[9];
@@ -319,9 +297,9 @@ static void bad_input(void **state)
     static const double mirror[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, -1.0};
     assay_channel       c[3];
     assay_image        *map          = make_map(*state, 2, 2, c);
-    assay_basis        *sh           = make_basis(*state, ASSAY_BASIS_SH, 2);
-    assay_basis        *hsh          = make_basis(*state, ASSAY_BASIS_HSH, 2);
-    assay_basis        *lsosh        = make_basis(*state, ASSAY_BASIS_LSOSH, 20);
+    assay_basis        *sh           = basis_make(*state, ASSAY_BASIS_SH, 2);
+    assay_basis        *hsh          = basis_make(*state, ASSAY_BASIS_HSH, 2);
+    assay_basis        *lsosh        = basis_make(*state, ASSAY_BASIS_LSOSH, 20);
     double              out[3 * 400] = {4.0};
     assert_int_equal(assay_basis_project_environment_hemisphere(sh, *state, map, 0.0, NULL, out),
                      ASSAY_ERR_ARGUMENT);
@@ -376,14 +354,14 @@ static void refused_memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(halves_are_digons, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(both_halves_make_the_sphere, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(every_kind_on_a_quarter, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(least_squares_of_a_constant, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(texels_are_patches, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_horizon_beside_an_edge, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(halves_are_digons, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(both_halves_make_the_sphere, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(every_kind_on_a_quarter, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(least_squares_of_a_constant, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(texels_are_patches, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(a_horizon_beside_an_edge, basis_set_up, basis_tear_down),
         cmocka_unit_test(rotation_to_a_pole),
-        cmocka_unit_test_setup_teardown(bad_input, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bad_input, basis_set_up, basis_tear_down),
         cmocka_unit_test(refused_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

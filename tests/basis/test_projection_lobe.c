@@ -10,34 +10,12 @@
 #include <math.h>
 
 #include "assay/basis.h"
+#include "support/basis_fixture.h"
 #include "support/failing_context.h"
 #include "support/near.h"
 
 enum { ORDER = 6, COUNT = ORDER * ORDER };
 static const double PI = 3.14159265358979323846;
-
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
-
-static assay_basis *make_basis(assay_context *context, assay_basis_kind kind, int order)
-{
-    assay_basis *basis = NULL;
-    assert_int_equal(assay_basis_create(context, kind, order, ASSAY_CONVENTION_THESIS, &basis),
-                     ASSAY_OK);
-    return basis;
-}
 
 static assay_lobe phong(double exponent, double theta, double phi)
 {
@@ -72,7 +50,7 @@ static double funk_hecke(double k, int l)
 static void narrow_phong_in_sh(void **state)
 {
     static const double exponents[] = {150.0, 1e3, 1e5, 1e8, 1e16, 1e300, 1.7e308};
-    assay_basis        *sh          = make_basis(*state, ASSAY_BASIS_SH, ORDER);
+    assay_basis        *sh          = basis_make(*state, ASSAY_BASIS_SH, ORDER);
     double              worst       = 0.0;
     for (size_t i = 0; i < sizeof exponents / sizeof exponents[0]; i++) {
         const double     k    = exponents[i];
@@ -99,7 +77,7 @@ static void narrow_phong_in_sh(void **state)
 /* Exponent 0 is 1 on a hemisphere about the mirror direction: a digon with ours. */
 static void exponent_zero_is_a_digon(void **state)
 {
-    assay_basis *hsh = make_basis(*state, ASSAY_BASIS_HSH, ORDER);
+    assay_basis *hsh = basis_make(*state, ASSAY_BASIS_HSH, ORDER);
     for (double beta = 0.1; beta < 1.57; beta += 0.3) {
         const assay_lobe lobe = phong(0.0, beta, 0.0);
         double           out[COUNT], matrix[COUNT * COUNT];
@@ -117,7 +95,7 @@ static void two_rules_agree(void **state)
 {
     static const double tilts[] = {0.0, 0.6, 1.3};
     for (int kind = 0; kind < ASSAY_BASIS_KIND_COUNT; kind++) {
-        assay_basis *basis = make_basis(*state, (assay_basis_kind)kind, ORDER);
+        assay_basis *basis = basis_make(*state, (assay_basis_kind)kind, ORDER);
         const double noise = kind == ASSAY_BASIS_LSOSH ? 1e-9 : 1e-13;
         for (size_t i = 0; i < sizeof tilts / sizeof tilts[0]; i++) {
             const assay_lobe one = phong(64.0, tilts[i], 0.4);
@@ -150,7 +128,7 @@ static void wide_lobes_by_the_product_rule(void **state)
     assay_lobe lobes[] = {ward(0.2, 0.5, 0.5, 0.7), ward(0.5, 0.15, 1.2, -2.0),
                           phong(90.0, 1.2, 2.5), phong(70.0, 0.0, 0.0)};
     for (int kind = ASSAY_BASIS_HSH; kind < ASSAY_BASIS_KIND_COUNT; kind++) {
-        assay_basis *basis = make_basis(*state, (assay_basis_kind)kind, 4);
+        assay_basis *basis = basis_make(*state, (assay_basis_kind)kind, 4);
         for (size_t i = 0; i < sizeof lobes / sizeof lobes[0]; i++) {
             double out[16], expected[16];
             assert_int_equal(assay_basis_project_lobe(basis, *state, &lobes[i], out), ASSAY_OK);
@@ -169,7 +147,7 @@ static void wide_lobes_by_the_product_rule(void **state)
 static void narrow_ward(void **state)
 {
     static const double widths[] = {1e-9, 1e-100, 1e-300};
-    assay_basis        *hsh      = make_basis(*state, ASSAY_BASIS_HSH, ORDER);
+    assay_basis        *hsh      = basis_make(*state, ASSAY_BASIS_HSH, ORDER);
     for (size_t i = 0; i < sizeof widths / sizeof widths[0]; i++) {
         const assay_lobe lobe = ward(widths[i], 0.25 * widths[i], 0.9, 0.4);
         double           values[COUNT], out[COUNT];
@@ -186,8 +164,8 @@ static void what_cannot_be_done(void **state)
 {
     const assay_lobe bad[]    = {phong(-1.0, 0.1, 0.0), phong(5.0, 1.6, 0.0),
                                  ward(1e300, 1e300, 0.2, 0), ward(0.0, 0.5, 0.2, 0.0)};
-    assay_basis     *hsh      = make_basis(*state, ASSAY_BASIS_HSH, 1);
-    assay_basis     *lsosh    = make_basis(*state, ASSAY_BASIS_LSOSH, 20);
+    assay_basis     *hsh      = basis_make(*state, ASSAY_BASIS_HSH, 1);
+    assay_basis     *lsosh    = basis_make(*state, ASSAY_BASIS_LSOSH, 20);
     double           out[400] = {7.0};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         assert_int_equal(assay_basis_project_lobe(hsh, *state, &bad[i], out), ASSAY_ERR_DOMAIN);
@@ -225,12 +203,13 @@ static void refused_memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(narrow_phong_in_sh, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(exponent_zero_is_a_digon, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(two_rules_agree, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(wide_lobes_by_the_product_rule, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(narrow_ward, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_cannot_be_done, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(narrow_phong_in_sh, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(exponent_zero_is_a_digon, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(two_rules_agree, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(wide_lobes_by_the_product_rule, basis_set_up,
+                                        basis_tear_down),
+        cmocka_unit_test_setup_teardown(narrow_ward, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(what_cannot_be_done, basis_set_up, basis_tear_down),
         cmocka_unit_test(refused_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
