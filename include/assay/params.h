@@ -10,11 +10,12 @@ extern "C" {
 #endif
 
 typedef enum {
-    ASSAY_PARAM_INT,   /* whole number in [minimum, maximum]; "inf" where the maximum is
-                          ASSAY_PARAM_INF                                                     */
-    ASSAY_PARAM_REAL,  /* finite number in [minimum, maximum]                                 */
-    ASSAY_PARAM_BOOL,  /* on | off                                                            */
-    ASSAY_PARAM_CHOICE /* one of the words of `choices`, separated by '|'                     */
+    ASSAY_PARAM_INT,    /* whole number in [minimum, maximum]; "inf" where the maximum is
+                           ASSAY_PARAM_INF                                                     */
+    ASSAY_PARAM_REAL,   /* finite number in [minimum, maximum]                                 */
+    ASSAY_PARAM_BOOL,   /* on | off                                                           */
+    ASSAY_PARAM_CHOICE, /* one of the words of `choices`, separated by '|'                    */
+    ASSAY_PARAM_PATH    /* of a file or folder; "" is none                                    */
 } assay_param_type;
 
 /* Stands for "inf" in a whole number: exact in a double. */

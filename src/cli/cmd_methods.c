@@ -35,6 +35,7 @@ static void print_param(const assay_param_desc *p)
     switch (p->type) {
     case ASSAY_PARAM_BOOL: break;
     case ASSAY_PARAM_CHOICE: snprintf(range, sizeof range, "%s", p->choices); break;
+    case ASSAY_PARAM_PATH: snprintf(range, sizeof range, "a path"); break;
     case ASSAY_PARAM_INT:
     case ASSAY_PARAM_REAL:
         if (p->maximum == ASSAY_PARAM_INF) {
@@ -45,7 +46,8 @@ static void print_param(const assay_param_desc *p)
         break;
     }
     printf("  %-16s %s%s%s (default %s)\n  %-16s %s%s%s\n", p->name, range, *p->unit ? " " : "",
-           p->unit, p->default_value, "", p->summary, *p->source ? " " : "", p->source);
+           p->unit, *p->default_value ? p->default_value : "none", "", p->summary,
+           *p->source ? " " : "", p->source);
 }
 
 static void print_methods(const char *only)

@@ -18,6 +18,7 @@ enum { VALUE_TEXT = 40 };
 typedef struct {
     double number; /* the value; the index of the word for a choice */
     char   text[VALUE_TEXT];
+    char  *path; /* of ASSAY_PARAM_PATH: owned, NULL where there is none */
 } param_value;
 
 struct assay_params {
@@ -69,6 +70,7 @@ static void describe_range(const assay_param_desc *desc, char *text, size_t size
     switch (desc->type) {
     case ASSAY_PARAM_BOOL: snprintf(text, size, "on or off"); break;
     case ASSAY_PARAM_CHOICE: snprintf(text, size, "one of %s", desc->choices); break;
+    case ASSAY_PARAM_PATH: snprintf(text, size, "a path"); break;
     case ASSAY_PARAM_INT:
         if (desc->maximum == ASSAY_PARAM_INF) {
             snprintf(text, size, "a whole number from %.0f, or inf", desc->minimum);
@@ -129,6 +131,7 @@ static bool parse(const assay_param_desc *desc, const char *text, param_value *v
         snprintf(value.text, VALUE_TEXT, "%s", text);
         break;
     }
+    case ASSAY_PARAM_PATH: break;
     case ASSAY_PARAM_INT:
         if (desc->maximum == ASSAY_PARAM_INF && strcmp(text, "inf") == 0) {
             value.number = ASSAY_PARAM_INF;
@@ -178,9 +181,23 @@ assay_status assay_params_create(assay_context *context, const assay_param_desc 
 void assay_params_destroy(assay_params *params)
 {
     if (params) {
+        for (int i = 0; params->table[i].name; i++) {
+            assay_release(params->context, params->values[i].path);
+        }
         assay_release(params->context, params->values);
         assay_release(params->context, params);
     }
+}
+
+static assay_status set_path(assay_params *params, int index, const char *value)
+{
+    char *path = *value ? assay_copy_text(params->context, value) : NULL;
+    if (*value && !path) {
+        return assay_fail_memory(params->context, "parameters");
+    }
+    assay_release(params->context, params->values[index].path);
+    params->values[index].path = path;
+    return ASSAY_OK;
 }
 
 static assay_status fail_unknown(const assay_params *params, const char *name)
@@ -206,6 +223,9 @@ assay_status assay_params_set(assay_params *params, const char *name, const char
         return fail_unknown(params, name);
     }
     const assay_param_desc *desc = &params->table[index];
+    if (desc->type == ASSAY_PARAM_PATH) {
+        return set_path(params, index, value);
+    }
     if (!parse(desc, value, &params->values[index])) {
         char range[160];
         describe_range(desc, range, sizeof range);
@@ -218,7 +238,10 @@ assay_status assay_params_set(assay_params *params, const char *name, const char
 const char *assay_params_text(const assay_params *params, const char *name)
 {
     const int index = find(params->table, name);
-    return index < 0 ? NULL : params->values[index].text;
+    if (index < 0) {
+        return NULL;
+    }
+    return params->values[index].path ? params->values[index].path : params->values[index].text;
 }
 
 static double number_of(const assay_params *params, const char *name, assay_param_type type)

@@ -1,13 +1,13 @@
 /* hemisphere.h - what is seen from a point, in M x N cells of its hemisphere, and what follows.
  *
  * Cell (j, k): stratum j of M in theta, counted from the pole, and k of N in phi.  Local frame: z
- * is the normal.  Two stratifications [gautron06] 2.2.5, FORMULAS in docs/methods/
- * irradiance-cache.md:
+ * is the normal.  Two stratifications [gautron06] 2.2.5, derivations in docs/methods/gathering.md:
  *
  *     COSINE    sin^2 theta = (j + u1) / M      E = pi / (M N) sum of L
  *     UNIFORM   cos theta = 1 - (j + u1) / M    E = 2 pi / (M N) sum of L cos theta
  *
- * and phi = 2 pi (k + u2) / N for both. */
+ * and phi = 2 pi (k + u2) / N for both.  Every sum runs in the order of the cells: a hemisphere
+ * gives the same bits whoever filled it, and in whatever order. */
 #ifndef ASSAY_GATHER_HEMISPHERE_H
 #define ASSAY_GATHER_HEMISPHERE_H
 
@@ -17,42 +17,59 @@
 typedef enum { ASSAY_STRATA_COSINE, ASSAY_STRATA_UNIFORM } assay_strata;
 
 typedef struct {
-    int          theta, phi; /* M, N: 2 ... ASSAY_STRATA_MAX each                    */
+    int          theta, phi; /* M, N: 2 ... ASSAY_STRATA_MAX each                                */
     assay_strata strata;
-    bool         jitter; /* directions at random places of the cells, else at their centres */
+    bool         jitter; /* directions at random places of the cells, else at their centres; a note
+                            of who fills the cells: nothing here depends on it                   */
 } assay_hemisphere_layout;
 
 #define ASSAY_STRATA_MAX 4096
 
 /* What one direction sees. */
 typedef struct {
-    assay_rgb  radiance;   /* W/(m2 sr), finite, >= 0                                          */
-    double     distance;   /* m, > 0; INFINITY where nothing is hit                            */
-    assay_vec3 direction;  /* unit, local                                                      */
+    assay_rgb  radiance;   /* W/(m2 sr), finite, >= 0                                            */
+    double     distance;   /* m, > 0; INFINITY where nothing is hit                              */
+    assay_vec3 direction;  /* unit, local, in the cell                                           */
     assay_vec3 hit_normal; /* unit, local: geometric normal of what is hit, towards the viewer;
-                              0 where nothing is                                               */
+                              0 where nothing is.  Used by ASSAY_GRADIENT_POINTS alone           */
 } assay_cell;
+
+/* A border of cells: theta_j = border j of M + 1, the pole first, the horizon last. */
+typedef struct {
+    double sin, cos, theta;
+} assay_theta_border;
+
+/* Azimuths of column k of cells: of its lower border 2 pi k / N, and of its middle. */
+typedef struct {
+    double border_sin, border_cos, middle_sin, middle_cos;
+} assay_phi_column;
 
 typedef struct {
     assay_hemisphere_layout layout;
-    assay_cell             *cells; /* [j * phi + k] */
+    assay_cell             *cells; /* [j * phi + k]: to be written by whoever gathers            */
+    assay_theta_border     *theta; /* M + 1 */
+    assay_phi_column       *phi;   /* N     */
 } assay_hemisphere;
 
-/* Cells zeroed.  Errors: ARGUMENT (strata outside 2 ... ASSAY_STRATA_MAX), MEMORY. */
+/* Cells that see nothing: directions at the centres, radiance 0, distance INFINITY.
+ * Errors: ARGUMENT (strata outside 2 ... ASSAY_STRATA_MAX or of no kind), MEMORY. */
 assay_status assay_hemisphere_create(assay_context *context, const assay_hemisphere_layout *layout,
                                      assay_hemisphere **hemisphere_out);
 void         assay_hemisphere_destroy(assay_context *context, assay_hemisphere *hemisphere);
 
-/* The local direction of a cell; u1, u2 in [0, 1), 1/2 for its centre. */
+/* The local direction of a cell; u1, u2 in [0, 1), 1/2 for its centre.  z > 0. */
 assay_vec3 assay_hemisphere_direction(const assay_hemisphere_layout *layout, int j, int k,
                                       double u1, double u2);
+
+/* Solid angle of each cell of stratum j, sr; all M N of them make 2 pi. */
+double assay_hemisphere_solid_angle(const assay_hemisphere *hemisphere, int j);
 
 /* Irradiance, W/m2. */
 assay_rgb assay_hemisphere_irradiance(const assay_hemisphere *hemisphere);
 
 /* Gradients per channel, local frame: E(n') = E + (n x n') . g, W/(m2 rad), g tangential; and the
  * translational one, W/m3 [ward-heckbert92, as in gautron06 eq. 2.7, absolute]; normal: with a
- * component along z, too. */
+ * component along z, too.  Where all cells have one radiance, both are exactly 0. */
 void assay_hemisphere_rotation_gradient(const assay_hemisphere *hemisphere,
                                         assay_vec3              gradient_out[3]);
 void assay_hemisphere_translation_gradient(const assay_hemisphere *hemisphere, bool normal,
@@ -67,15 +84,19 @@ double assay_hemisphere_harmonic_mean(const assay_hemisphere *hemisphere, assay_
 /* Smallest distance, m; INFINITY where nothing is seen. */
 double assay_hemisphere_nearest(const assay_hemisphere *hemisphere);
 
-/* Coefficients of the incident radiance in a hemispherical orthonormal basis (HSH):
- * coefficients_out: 3 rows (R, G, B) of count.  Errors: ARGUMENT (kind), MEMORY. */
+/* Coefficients of the incident radiance, W/(m2 sr), in a hemispherical basis that is orthonormal
+ * under solid angle: HSH, ZERNIKE, MAKHOTKIN_SQRT, ESH.  UNIFORM strata, jittered, estimate them
+ * without bias; in COSINE strata, coarse at the horizon, radiance counts as constant in a cell.
+ * coefficients_out: 3 rows (R, G, B) of count.  Errors: ARGUMENT (kind), MEMORY, DOMAIN (a cell's
+ * direction is not of unit length or not above the horizon). */
 assay_status assay_hemisphere_project(const assay_hemisphere *hemisphere, assay_context *context,
                                       const assay_basis *basis, double *coefficients_out);
 
 /* Their translational gradients, W/(m3 sr) in the local frame, which moves without turning.
- * POINTS: what is seen are fixed points, their solid angles and directions move; wrong where they
- * hide one another.  WALLS: the borders of the cells move as the nearer of their neighbours does;
- * tangential.  gradients_out: 3 rows of count.  Errors: as above. */
+ * POINTS: what is seen are fixed points that keep their radiance; their solid angles and directions
+ * move; wrong where they hide one another, and for UNIFORM strata.  WALLS: the borders of the cells
+ * move as the nearer of their neighbours does; exactly 0 where all cells have one radiance.
+ * gradients_out: 3 rows of count.  Errors: as above. */
 typedef enum { ASSAY_GRADIENT_POINTS, ASSAY_GRADIENT_WALLS } assay_gradient_form;
 assay_status assay_hemisphere_project_gradient(const assay_hemisphere *hemisphere,
                                                assay_context *context, const assay_basis *basis,

@@ -74,6 +74,11 @@ static inline assay_rgb rgb_add(assay_rgb a, assay_rgb b)
     return rgb(a.r + b.r, a.g + b.g, a.b + b.b);
 }
 
+static inline assay_rgb rgb_sub(assay_rgb a, assay_rgb b)
+{
+    return rgb(a.r - b.r, a.g - b.g, a.b - b.b);
+}
+
 static inline assay_rgb rgb_mul(assay_rgb a, assay_rgb b)
 {
     return rgb(a.r * b.r, a.g * b.g, a.b * b.b);

@@ -14,13 +14,14 @@ assay_status assay_method_params(assay_context *context, const char *method,
     return status != ASSAY_OK ? status : assay_params_create(context, found->params, params_out);
 }
 
-static const char *const TYPE_NAMES[] = {"int", "real", "bool", "choice"};
+static const char *const TYPE_NAMES[] = {"int", "real", "bool", "choice", "path"};
 
 static bool add_range(cJSON *json, const assay_param_desc *desc)
 {
     switch (desc->type) {
     case ASSAY_PARAM_CHOICE: return cJSON_AddStringToObject(json, "choices", desc->choices);
-    case ASSAY_PARAM_BOOL: return true;
+    case ASSAY_PARAM_BOOL:
+    case ASSAY_PARAM_PATH: return true;
     case ASSAY_PARAM_INT:
         if (desc->maximum == ASSAY_PARAM_INF) {
             return cJSON_AddNumberToObject(json, "minimum", desc->minimum) &&

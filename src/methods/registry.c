@@ -4,11 +4,13 @@
 #include <string.h>
 
 #include "methods/hsh_environment/hsh_environment.h"
+#include "methods/irradiance_cache/irradiance_cache_method.h"
 #include "methods/path/path.h"
 
 static const assay_method *const METHODS[] = {
     &assay_method_path,
     &assay_method_hsh_environment,
+    &assay_method_irradiance_cache,
 };
 
 enum { METHOD_COUNT = sizeof METHODS / sizeof METHODS[0] };

@@ -7,7 +7,7 @@
 
 #include "math/frame.h"
 
-/* A plain value, world frame. */
+/* A plain value, world frame.  What a weight needs comes first. */
 typedef struct {
     assay_vec3 position;    /* m                                                                  */
     assay_vec3 normal;      /* unit                                                               */
@@ -34,22 +34,27 @@ typedef enum {
 
 /* How records are used. */
 typedef struct {
-    double            a; /* accuracy, > 0 */
+    double            a; /* accuracy, finite, >= 1 / ASSAY_WEIGHT_MAX */
     assay_weight_kind weight;
     assay_gradients   gradients;
-    bool in_front;       /* leave out records in front of the point, [ward88]                    */
+    bool in_front;       /* leave out records that lie in front of the point, [ward88]           */
     bool clamp_negative; /* what is extrapolated below 0 counts as 0                             */
 } assay_record_rules;
 
-/* The largest weight: that of a record at its own place. */
+/* The largest weight of ASSAY_WEIGHT_WARD: that of a record at its own place.  (That of
+ * ASSAY_WEIGHT_TABELLION is 1.) */
 #define ASSAY_WEIGHT_MAX 1e12
 
-/* The weight of a record at a point, or 0 where it does not contribute; in (0, ASSAY_WEIGHT_MAX].
- * The in-front test is part of it. */
+/* A record lies in front of a point where (p - p_k) . (n + n_k) / 2 < -ASSAY_IN_FRONT * R_k. */
+#define ASSAY_IN_FRONT 1e-3
+
+/* The weight of a record at a point, or 0 where it does not contribute (and where a coordinate is
+ * NaN); in (0, ASSAY_WEIGHT_MAX].  The in-front test is part of it. */
 double assay_record_weight(const assay_record *record, const assay_record_rules *rules,
                            assay_vec3 position, assay_vec3 normal);
 
-/* The distance beyond which the weight is 0 whatever the normal, m. */
+/* A distance beyond which the weight is 0 whatever the normal, m: a R_k, and 1e-12 of it more for
+ * the rounding.  May be INFINITY. */
 double assay_record_reach(const assay_record *record, const assay_record_rules *rules);
 
 /* What the record says that the irradiance at the point is, W/m2. */

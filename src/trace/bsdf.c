@@ -146,6 +146,18 @@ bool assay_bsdf_sample_direction(const assay_bsdf *bsdf, assay_vec3 wo, double u
     return assay_bsdf_view_sample(&view, u_lobe, u1, u2, sample_out);
 }
 
+assay_rgb assay_bsdf_view_lambert(const assay_bsdf_view *view)
+{
+    if (!view->scatters) {
+        return rgb_grey(0.0);
+    }
+    if (view->bsdf->model == ASSAY_BSDF_METALLIC_ROUGHNESS) {
+        const double coat = rgb_max(view->lobes.f0);
+        return rgb_scale(view->lobes.diffuse, coat < 1.0 ? 1.0 - coat : 0.0);
+    }
+    return view->bsdf->base_color;
+}
+
 assay_rgb assay_bsdf_albedo(const assay_bsdf *bsdf)
 {
     return adds_specular(bsdf->model) ? rgb_add(bsdf->base_color, bsdf->specular_color)

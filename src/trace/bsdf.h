@@ -102,6 +102,11 @@ assay_bsdf_value assay_bsdf_evaluate(const assay_bsdf *bsdf, assay_vec3 wo, assa
 bool assay_bsdf_sample_direction(const assay_bsdf *bsdf, assay_vec3 wo, double u_lobe, double u1,
                                  double u2, assay_bsdf_sample *sample_out);
 
+/* Albedo of a Lambertian near to the diffuse part of what the view reflects, for methods that know
+ * the irradiance: exact for Lambert, Phong and Ward; of metallic-roughness the base under its coat,
+ * seen at normal incidence. */
+assay_rgb assay_bsdf_view_lambert(const assay_bsdf_view *view);
+
 /* The reflectance that a G-buffer calls albedo: base colour (diffuse, metal or tint; of unlit
  * surfaces, too, though they scatter nothing) + specular colour for Phong and Ward. */
 assay_rgb assay_bsdf_albedo(const assay_bsdf *bsdf);

@@ -160,19 +160,41 @@ static bool survives_roulette(path_walk *walk, int bounce)
     return true;
 }
 
+/* Draws where the path goes on from the vertex. */
+static bool draw_direction(path_walk *walk, const assay_vertex *vertex, const assay_bsdf_view *view,
+                           assay_bsdf_sample *sample_out, assay_vec3 *direction_out)
+{
+    const double u_lobe = assay_random_next(walk->random);
+    const double u1     = assay_random_next(walk->random);
+    const double u2     = assay_random_next(walk->random);
+    if (!assay_bsdf_view_sample(view, u_lobe, u1, u2, sample_out)) {
+        return false;
+    }
+    *direction_out = frame3_to_world(&vertex->frame, sample_out->wi);
+    return sides_agree(vertex, *direction_out, sample_out->transmitted);
+}
+
+/* What the ray from the vertex meets.  False where it meets nothing. */
+static bool trace_from(path_walk *walk, const assay_vertex *vertex, assay_vec3 direction,
+                       bool transmitted, assay_hit *hit_out)
+{
+    if (transmitted && vertex->bsdf.solid) {
+        const bool enters = vec3_dot(direction, vertex->surface.ng) < 0.0;
+        walk->medium = enters ? &walk->world->scene->materials[vertex->surface.material] : NULL;
+    }
+    const assay_vec3 origin =
+        assay_world_offset(walk->world, vertex->surface.position, vertex->surface.ng, direction);
+    return assay_world_closest(walk->world, origin, direction, false, walk->random,
+                               &walk->counts->scatter, hit_out);
+}
+
 /* Goes from the vertex to the next one, adding what it finds there.  False where the path ends. */
 static bool follow(path_walk *walk, assay_vertex *vertex, const assay_bsdf_view *view, int bounce)
 {
-    const double      u_lobe = assay_random_next(walk->random);
-    const double      u1     = assay_random_next(walk->random);
-    const double      u2     = assay_random_next(walk->random);
+    const bool        last = bounce == walk->settings->bounces;
     assay_bsdf_sample sample;
-    if (!assay_bsdf_view_sample(view, u_lobe, u1, u2, &sample)) {
-        return false;
-    }
-    const bool       last      = bounce == walk->settings->bounces;
-    const assay_vec3 direction = frame3_to_world(&vertex->frame, sample.wi);
-    if (!sides_agree(vertex, direction, sample.transmitted) ||
+    assay_vec3        direction;
+    if (!draw_direction(walk, vertex, view, &sample, &direction) ||
         (last && !sample.specular && walk->settings->estimator == ASSAY_ESTIMATOR_NEE)) {
         return false;
     }
@@ -180,15 +202,8 @@ static bool follow(path_walk *walk, assay_vertex *vertex, const assay_bsdf_view 
     if (!survives_roulette(walk, bounce)) {
         return false;
     }
-    if (sample.transmitted && vertex->bsdf.solid) {
-        const bool enters = vec3_dot(direction, vertex->surface.ng) < 0.0;
-        walk->medium = enters ? &walk->world->scene->materials[vertex->surface.material] : NULL;
-    }
-    const assay_vec3 origin =
-        assay_world_offset(walk->world, vertex->surface.position, vertex->surface.ng, direction);
     assay_hit hit;
-    if (!assay_world_closest(walk->world, origin, direction, false, walk->random,
-                             &walk->counts->scatter, &hit)) {
+    if (!trace_from(walk, vertex, direction, sample.transmitted, &hit)) {
         const assay_receiver receiver = receiver_of(vertex);
         const double         pdf_light =
             assay_lights_pdf_infinite(walk->world->lights, &receiver, direction);
@@ -211,11 +226,11 @@ static bool follow(path_walk *walk, assay_vertex *vertex, const assay_bsdf_view 
     return !last && !rgb_is_black(walk->throughput);
 }
 
-static void scatter(path_walk *walk, assay_vertex *vertex)
+static void scatter(path_walk *walk, assay_vertex *vertex, int first)
 {
     const bool draws =
         walk->settings->estimator != ASSAY_ESTIMATOR_BSDF || walk->world->scene->punctual_count > 0;
-    for (int bounce = 1; bounce <= walk->settings->bounces; bounce++) {
+    for (int bounce = first; bounce <= walk->settings->bounces; bounce++) {
         assay_light_sample light;
         const bool         lit = draws && draw_light(walk, vertex, &light);
         assay_vertex_dress(walk->world, vertex);
@@ -239,8 +254,45 @@ assay_path_light assay_path_scatter(const assay_world *world, const assay_path_s
                          .counts     = counts,
                          .throughput = rgb_grey(1.0)};
     assay_vertex at   = *vertex;
-    scatter(&walk, &at);
+    scatter(&walk, &at, 1);
     return walk.light;
+}
+
+/* The path is followed with a throughput of 1 and what it brings is weighted afterwards, since the
+ * weight may be negative. */
+assay_rgb assay_path_indirect(const assay_world *world, const assay_path_settings *settings,
+                              const assay_vertex *vertex, assay_rgb lambert, assay_random *random,
+                              assay_ray_counts *counts)
+{
+    const assay_rgb       nothing = rgb_grey(0.0);
+    const assay_bsdf_view view    = assay_bsdf_seen_from(&vertex->bsdf, vertex->wo_local);
+    path_walk             walk    = {.world      = world,
+                                     .settings   = settings,
+                                     .random     = random,
+                                     .counts     = counts,
+                                     .throughput = rgb_grey(1.0)};
+    assay_bsdf_sample     sample;
+    assay_vec3            direction;
+    if (settings->bounces < 2 || !draw_direction(&walk, vertex, &view, &sample, &direction)) {
+        return nothing;
+    }
+    assay_rgb weight = sample.weight;
+    if (!sample.specular && !sample.transmitted) {
+        const double density = fabs(sample.wi.z) * ASSAY_INV_PI;
+        weight               = rgb_sub(weight, rgb_scale(lambert, density / sample.pdf));
+    }
+    const double strength = rgb_max(rgb(fabs(weight.r), fabs(weight.g), fabs(weight.b)));
+    const double chance   = strength < 1.0 ? strength : 1.0;
+    assay_hit    hit;
+    if (!(assay_random_next(random) < chance) ||
+        !trace_from(&walk, vertex, direction, sample.transmitted, &hit)) {
+        return nothing;
+    }
+    walk.throughput = absorption(walk.medium, hit.t);
+    assay_vertex next;
+    assay_vertex_place(world, &hit, direction, &next);
+    scatter(&walk, &next, 2);
+    return rgb_mul(rgb_scale(weight, 1.0 / chance), walk.light.indirect);
 }
 
 assay_path_light assay_path_radiance(const assay_world *world, const assay_path_settings *settings,
@@ -260,6 +312,6 @@ assay_path_light assay_path_radiance(const assay_world *world, const assay_path_
     assay_vertex vertex;
     assay_vertex_place(world, &hit, direction, &vertex);
     add_light(&walk, 0, assay_surface_emission(world->scene, &vertex.surface, vertex.front));
-    scatter(&walk, &vertex);
+    scatter(&walk, &vertex, 1);
     return walk.light;
 }

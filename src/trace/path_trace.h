@@ -46,4 +46,12 @@ assay_path_light assay_path_scatter(const assay_world *world, const assay_path_s
                                     const assay_vertex *vertex, assay_random *random,
                                     assay_ray_counts *counts);
 
+/* One sample of the indirect light (2 bounces and more) that the vertex (dressed) scatters towards
+ * its wo beyond what a Lambertian of albedo `lambert` would: the integral of (f - lambert / pi)
+ * times cosine times indirect radiance.  So a method that has the irradiance E adds lambert / pi E
+ * and this, whatever it chose for lambert; may be negative.  Black: all indirect light. */
+assay_rgb assay_path_indirect(const assay_world *world, const assay_path_settings *settings,
+                              const assay_vertex *vertex, assay_rgb lambert, assay_random *random,
+                              assay_ray_counts *counts);
+
 #endif

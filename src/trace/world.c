@@ -57,6 +57,14 @@ void assay_world_destroy(assay_world *world)
     }
 }
 
+assay_status assay_world_fail_light(const assay_world *world)
+{
+    return assay_fail(world->scene->context, ASSAY_ERR_DOMAIN,
+                      "%s: gives light that is too bright to compute with: its emission or its "
+                      "scale is too extreme",
+                      world->scene->path);
+}
+
 /* glTF culls the backs of single-sided materials.  What light passes through keeps its back, or a
  * glass body would have no far side. */
 static bool is_culled(const assay_scene *scene, uint32_t triangle, assay_vec3 direction)

@@ -20,6 +20,9 @@ typedef struct {
 assay_status assay_world_create(const assay_scene *scene, assay_world **world_out);
 void         assay_world_destroy(assay_world *world);
 
+/* Says that light came out that is no finite number; returns ASSAY_ERR_DOMAIN. */
+assay_status assay_world_fail_light(const assay_world *world);
+
 /* Rays traced, by kind; each worker counts its own. */
 typedef struct {
     uint64_t camera, scatter, shadow;

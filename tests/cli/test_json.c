@@ -199,7 +199,7 @@ static void scene_report(void **state)
 static void methods_report(void **state)
 {
     (void)state;
-    static const char *const types[] = {"int", "real", "bool", "choice"};
+    static const char *const types[] = {"int", "real", "bool", "choice", "path"};
     cJSON                   *json    = run_json(0, "methods --json");
     assert_int_equal(cJSON_GetArraySize(json_member(json, "methods")), assay_method_count());
     for (int i = 0; i < assay_method_count(); i++) {
@@ -218,7 +218,7 @@ static void methods_report(void **state)
             assert_string_equal(text(param, "source"), p->source);
             if (p->type == ASSAY_PARAM_CHOICE) {
                 assert_string_equal(text(param, "choices"), p->choices);
-            } else if (p->type != ASSAY_PARAM_BOOL) {
+            } else if (p->type == ASSAY_PARAM_INT || p->type == ASSAY_PARAM_REAL) {
                 assert_true(number(param, "minimum") == p->minimum);
                 assert_true(p->maximum == ASSAY_PARAM_INF
                                 ? strcmp(text(param, "maximum"), "inf") == 0

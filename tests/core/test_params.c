@@ -16,6 +16,7 @@ static const assay_param_desc TABLE[] = {
     {"error", ASSAY_PARAM_REAL, "", "0.1", 0, 1, NULL, "", ""},
     {"flag", ASSAY_PARAM_BOOL, "", "off", 0, 0, NULL, "", ""},
     {"kind", ASSAY_PARAM_CHOICE, "", "b", 0, 0, "a|b|long-one", "", ""},
+    {"file", ASSAY_PARAM_PATH, "", "", 0, 0, NULL, "", ""},
     {0},
 };
 
@@ -52,7 +53,23 @@ static void defaults(void **state)
     assert_int_equal(assay_params_choice(params, "kind"), 1);
     assert_string_equal(assay_params_text(params, "error"), "0.1");
     assert_string_equal(assay_params_text(params, "depth"), "inf");
+    assert_string_equal(assay_params_text(params, "file"), "");
     assert_null(assay_params_text(params, "nothing"));
+}
+
+/* Kept whole, however long; replaced; and taken away. */
+static void paths(void **state)
+{
+    assay_params *params = ((void **)*state)[1];
+    char          text[5001];
+    memset(text, 'x', sizeof text);
+    text[5000] = 0;
+    assert_int_equal(assay_params_set(params, "file", text), ASSAY_OK);
+    assert_string_equal(assay_params_text(params, "file"), text);
+    assert_int_equal(assay_params_set(params, "file", "a b"), ASSAY_OK);
+    assert_string_equal(assay_params_text(params, "file"), "a b");
+    assert_int_equal(assay_params_set(params, "file", ""), ASSAY_OK);
+    assert_string_equal(assay_params_text(params, "file"), "");
 }
 
 static void good_values(void **state)
@@ -111,6 +128,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(defaults, setup, teardown),
+        cmocka_unit_test_setup_teardown(paths, setup, teardown),
         cmocka_unit_test_setup_teardown(good_values, setup, teardown),
         cmocka_unit_test_setup_teardown(bad_values, setup, teardown),
     };

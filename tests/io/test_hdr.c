@@ -134,7 +134,8 @@ static void make_pixels(uint8_t *pixels, int count, uint64_t seed)
     }
 }
 
-/* Whether the image is the pixels, times `factor`, exactly up to the rounding of the factor. */
+/* Whether the image is the pixels, times `factor`, exactly up to the rounding of the factor (of
+ * floats below 2^-126: half a unit of the last place that they have). */
 static bool is_picture(const assay_image *image, const uint8_t *pixels, const double factor[3])
 {
     static const char *const names[] = {"R", "G", "B"};
@@ -147,7 +148,7 @@ static bool is_picture(const assay_image *image, const uint8_t *pixels, const do
         for (int i = 0; i < count; i++) {
             const uint8_t *p     = pixels + 4 * i;
             const double   value = p[3] ? ldexp(p[c], p[3] - 136) * factor[c] : 0.0;
-            if (fabs((double)channel.data.f32[i] - value) > 0x1p-24 * value) {
+            if (fabs((double)channel.data.f32[i] - value) > 0x1p-24 * value + 0x1p-150) {
                 return false;
             }
         }

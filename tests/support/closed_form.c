@@ -36,27 +36,40 @@ static int clip(const wide *in, int count, wide n, wide *out)
     return kept;
 }
 
-static long double polygon(const assay_vec3 *vertices, int count, wide p, wide n)
+/* Twice the vector, in the direction that the winding gives. */
+static wide lambert(const assay_vec3 *vertices, int count, wide p, wide n)
 {
-    wide relative[8], kept[16];
+    wide relative[8], kept[16], sum = {0.0L, 0.0L, 0.0L};
     for (int i = 0; i < count; i++) {
         relative[i] = sub(widen(vertices[i]), p);
     }
-    const int   left = clip(relative, count, n, kept);
-    long double sum  = 0.0L;
+    const int left = clip(relative, count, n, kept);
     for (int i = 0; i < left; i++) {
         const wide        c      = cross(kept[i], kept[(i + 1) % left]);
         const long double length = sqrtl(dot(c, c));
         if (length > 0.0L) {
-            sum += atan2l(length, dot(kept[i], kept[(i + 1) % left])) * dot(n, c) / length;
+            const long double w = atan2l(length, dot(kept[i], kept[(i + 1) % left])) / length;
+            sum                 = (wide){sum.x + w * c.x, sum.y + w * c.y, sum.z + w * c.z};
         }
     }
-    return 0.5L * fabsl(sum);
+    return sum;
+}
+
+static long double polygon(const assay_vec3 *vertices, int count, wide p, wide n)
+{
+    return 0.5L * fabsl(dot(n, lambert(vertices, count, p, n)));
 }
 
 long double closed_polygon(const assay_vec3 *vertices, int count, assay_vec3 p, assay_vec3 n)
 {
     return polygon(vertices, count, widen(p), widen(n));
+}
+
+assay_vec3 closed_polygon_vector(const assay_vec3 *vertices, int count, assay_vec3 p, assay_vec3 n)
+{
+    const wide        v    = lambert(vertices, count, widen(p), widen(n));
+    const long double half = dot(widen(n), v) < 0.0L ? -0.5L : 0.5L;
+    return vec3((double)(half * v.x), (double)(half * v.y), (double)(half * v.z));
 }
 
 assay_vec3 closed_polygon_gradient(const assay_vec3 *vertices, int count, assay_vec3 p,
@@ -103,6 +116,14 @@ long double closed_sphere(assay_vec3 centre, double radius, assay_vec3 p, assay_
     const wide        r = sub(widen(centre), widen(p));
     const long double d = sqrtl(dot(r, r));
     return acosl(-1.0L) * (long double)radius * radius * dot(widen(n), r) / (d * d * d);
+}
+
+assay_vec3 closed_sphere_gradient(assay_vec3 centre, double radius, assay_vec3 p, assay_vec3 n)
+{
+    const assay_vec3 r      = vec3_sub(centre, p);
+    const double     d2     = vec3_dot(r, r);
+    const double     factor = (double)acosl(-1.0L) * radius * radius / (d2 * sqrt(d2));
+    return vec3_scale(vec3_mad(vec3_scale(n, -1.0), 3.0 * vec3_dot(n, r) / d2, r), factor);
 }
 
 /* [howell82] configuration C-11 with X = Y = a / c. */

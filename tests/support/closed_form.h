@@ -9,8 +9,12 @@
  * of its plane through the receiver).  At most 8 vertices, in either winding. */
 long double closed_polygon(const assay_vec3 *vertices, int count, assay_vec3 p, assay_vec3 n);
 
-/* Gradient of the same with respect to p, W/m3, by central differences of the closed form (error
- * about 1e-12 of it). */
+/* Its vector: the integral of L w over the part above the horizon, 1/2 sum theta_i gamma_i, which
+ * points to the polygon.  E = n . vector; the rotational gradient is n x vector. */
+assay_vec3 closed_polygon_vector(const assay_vec3 *vertices, int count, assay_vec3 p, assay_vec3 n);
+
+/* Gradient of closed_polygon with respect to p, W/m3, by central differences of the closed form
+ * (error about 1e-12 of it). */
 assay_vec3 closed_polygon_gradient(const assay_vec3 *vertices, int count, assay_vec3 p,
                                    assay_vec3 n);
 
@@ -20,6 +24,9 @@ assay_vec3 closed_polygon_rotation(const assay_vec3 *vertices, int count, assay_
 
 /* From a sphere of radiance 1 that lies wholly above the horizon: pi R^2 n . r / |r|^3. */
 long double closed_sphere(assay_vec3 centre, double radius, assay_vec3 p, assay_vec3 n);
+
+/* Gradient of the same with respect to p. */
+assay_vec3 closed_sphere_gradient(assay_vec3 centre, double radius, assay_vec3 p, assay_vec3 n);
 
 /* Form factor between two equal parallel squares of side a at distance c, directly opposed. */
 long double closed_parallel_squares(double a, double c);

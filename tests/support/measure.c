@@ -28,13 +28,24 @@ static void require(assay_context *context, assay_status status)
     }
 }
 
+/* What is no parameter but stands among the settings. */
+static const char *special(const setting *settings, const char *name, const char *otherwise)
+{
+    for (; settings && settings->name; settings++) {
+        if (strcmp(settings->name, name) == 0) {
+            return settings->value;
+        }
+    }
+    return otherwise;
+}
+
 /* The library keeps a scene's context to itself, so parameters are made with one of their own. */
 static assay_params *make_params(assay_context *context, const setting *settings)
 {
     assay_params *params = NULL;
-    require(context, assay_method_params(context, "path", &params));
+    require(context, assay_method_params(context, special(settings, "method", "path"), &params));
     for (; settings && settings->name; settings++) {
-        if (strcmp(settings->name, "seed") == 0) {
+        if (strcmp(settings->name, "seed") == 0 || strcmp(settings->name, "method") == 0) {
             continue;
         }
         require(context, assay_params_set(params, settings->name, settings->value));
@@ -52,12 +63,9 @@ assay_image *measure_render(assay_scene *scene, const setting *settings, int wid
     options.width                = width;
     options.height               = height;
     options.layers               = layers;
-    for (const setting *s = settings; s && s->name; s++) {
-        if (strcmp(s->name, "seed") == 0) {
-            options.seed = strtoull(s->value, NULL, 10);
-        }
-    }
-    const assay_status status = assay_render(scene, "path", params, &options, &image, NULL);
+    options.seed                 = strtoull(special(settings, "seed", "0"), NULL, 10);
+    const assay_status status =
+        assay_render(scene, special(settings, "method", "path"), params, &options, &image, NULL);
     assay_params_destroy(params);
     assay_context_destroy(context);
     assert_int_equal(status, ASSAY_OK);

@@ -9,7 +9,8 @@ typedef struct {
     double value, error;
 } measured;
 
-/* A parameter by name and value, or "seed"; lists end with {NULL, NULL}. */
+/* A parameter by name and value, "seed", or "method" (path without it); lists end with {NULL,
+ * NULL}. */
 typedef struct {
     const char *name, *value;
 } setting;

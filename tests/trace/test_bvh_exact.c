@@ -259,7 +259,7 @@ static void narrow_boxes_are_seen(void **state)
     tuning.box_margin  = 0.0;
     case_mesh *lattice = case_lattice(150, 8);
     uint64_t   hits    = 0;
-    assert_true(wrong_answers(lattice, &tuning, CASE_FAR, 2000, &hits) > 0);
+    assert_true(wrong_answers(lattice, &tuning, CASE_FAR, 20000, &hits) > 0);
     assert_true(wrong_answers(lattice, &tuning, CASE_VERTEX, 20000, &hits) > 0);
     case_mesh_destroy(lattice);
 }

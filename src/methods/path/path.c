@@ -82,14 +82,6 @@ static assay_status prepare(void *state, const assay_frame *frame)
     return ASSAY_OK;
 }
 
-assay_status assay_path_fail_light(const assay_frame *frame)
-{
-    return assay_fail(frame->context, ASSAY_ERR_DOMAIN,
-                      "%s: gives light that is too bright to compute with: its emission or its "
-                      "scale is too extreme",
-                      frame->world->scene->path);
-}
-
 static int probe_columns(const void *state)
 {
     return ((const assay_path_state *)state)->gradients ? ASSAY_PROBE_COLUMNS

@@ -28,10 +28,6 @@ typedef struct {
 
 assay_status assay_path_render(void *state, const assay_frame *frame, assay_film *film,
                                assay_ray_counts *counts);
-/* What a sample that is not finite, or too large for an image, means to the user; ASSAY_ERR_DOMAIN.
- */
-assay_status assay_path_fail_light(const assay_frame *frame);
-
 assay_status assay_path_probe(void *state, const assay_frame *frame,
                               const assay_probe_points *points, double *rows,
                               assay_ray_counts *counts);

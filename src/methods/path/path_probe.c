@@ -163,7 +163,7 @@ static assay_status run_passes(probe_job *job)
                                      points, probe_point, job);
         job->first += job->count;
     }
-    return status == ASSAY_ERR_DOMAIN ? assay_path_fail_light(job->frame) : status;
+    return status == ASSAY_ERR_DOMAIN ? assay_world_fail_light(job->frame->world) : status;
 }
 
 /* From sums of squared deviations to variances of the means. */

@@ -159,7 +159,7 @@ static assay_status run_round(render_pass *pass, uint32_t count)
         pass->first += pass->count;
     }
     if (status == ASSAY_ERR_DOMAIN) {
-        return assay_path_fail_light(frame);
+        return assay_world_fail_light(frame->world);
     }
     return status;
 }

@@ -1,0 +1,56 @@
+/* cached_image.h - an image whose indirect light comes from caches: what the caching methods share.
+ *
+ * Visible points are the pixels' centres first, then every camera sample.  Caches are asked to know
+ * enough at all of them, in a fixed order, and then (or at once, in a single pass) the samples are
+ * evaluated: emission and direct light by the path tracer, indirect light from the caches. */
+#ifndef ASSAY_METHODS_CACHED_IMAGE_H
+#define ASSAY_METHODS_CACHED_IMAGE_H
+
+#include "gather/gather.h"
+#include "methods/method.h"
+
+typedef enum {
+    ASSAY_ORDER_SCANLINE,    /* row by row                                                     */
+    ASSAY_ORDER_HIERARCHICAL /* every 2^k-th pixel of every 2^k-th row, then those between, ... */
+} assay_pixel_order;
+
+/* A point that is looked at. */
+typedef struct {
+    bool         hit;
+    bool         centre; /* of a pixel: irradiance is asked here, whatever the surface          */
+    assay_vertex vertex; /* dressed                              */
+    double       footprint; /* m: size of a pixel there             */
+} assay_cached_point;
+
+typedef struct {
+    void *user;
+    /* Makes the caches know enough at the points, in their order; limits_out: what had been made
+     * when each was served. */
+    assay_status (*fill)(void *user, uint64_t before, uint64_t total, size_t count,
+                         const assay_cached_point *points, uint32_t *limits_out);
+    /* Indirect radiance towards the point's wo, from what had been made within the limit. */
+    assay_status (*radiance)(void *user, const assay_cached_point *point, uint32_t limit,
+                             assay_random *random, assay_ray_counts *counts, int worker,
+                             assay_rgb *radiance_out);
+    /* Indirect irradiance on the viewer's side. */
+    assay_status (*irradiance)(void *user, const assay_cached_point *point, uint32_t limit,
+                               int worker, assay_rgb *irradiance_out);
+    /* A picture instead of the colour, or NULL: of the point, whose colour would be `color`. */
+    assay_status (*picture)(void *user, const assay_cached_point *point, uint32_t limit, int worker,
+                            assay_rgb color, assay_rgb *picture_out);
+} assay_cached_light;
+
+typedef struct {
+    assay_path_settings path; /* bounces, estimator, roulette */
+    uint32_t            spp;
+    assay_pixel_order   order;  /* of the pixels' centres        */
+    int                 passes; /* 1: evaluated as the caches grow; 2: when they are complete */
+} assay_cached_image_settings;
+
+/* Errors: MEMORY, DOMAIN, CANCELLED, and those of the caches. */
+assay_status assay_cached_image_render(const assay_frame                 *frame,
+                                       const assay_cached_image_settings *settings,
+                                       const assay_cached_light *light, assay_film *film,
+                                       assay_ray_counts *counts);
+
+#endif

@@ -1,0 +1,474 @@
+/* irradiance_cache.c - filling and asking.
+ *
+ * Invariant: the store changes between waves alone, from the calling thread; workers write nothing
+ * but their own scratch and counters. */
+#include "record/irradiance_cache.h"
+
+#include <string.h>
+
+#include "core/alloc.h"
+#include "core/numerics.h"
+#include "core/parallel.h"
+
+/* Points that are looked at together.  Part of the result only with neighbour clamping, where
+ * records shrink while a wave is served. */
+enum { WAVE = 4096 };
+
+/* A level's hemispheres are numbered in streams of their own. */
+static const int LEVEL_SHIFT = 56;
+
+/* A worker's own; aligned apart by its size. */
+typedef struct {
+    assay_contributions found;
+    uint64_t            unserved;
+    bool                refused; /* memory, inside a gathering */
+    char                apart[64];
+} cache_worker;
+
+struct assay_irradiance_cache {
+    const assay_world              *world;
+    assay_context                  *context;
+    assay_irradiance_cache_settings settings;
+    uint64_t                        seed;
+    int                             level;
+    double                          diagonal; /* m, of the scene */
+    assay_record_store             *store;
+    assay_hemisphere               *hemisphere;
+    assay_ray_counts               *worker_counts;
+    cache_worker                   *workers;
+    bool                           *covered; /* WAVE                                */
+    assay_irradiance_cache         *next;
+    assay_cache_point              *seen; /* what the cells see                      */
+};
+
+static bool allocate(assay_irradiance_cache *cache)
+{
+    const size_t threads = (size_t)assay_context_threads(cache->context);
+    cache->worker_counts = assay_allocate(cache->context, threads, sizeof *cache->worker_counts);
+    cache->workers       = assay_allocate(cache->context, threads, sizeof *cache->workers);
+    cache->covered       = assay_allocate(cache->context, WAVE, sizeof *cache->covered);
+    for (size_t i = 0; cache->workers && i < threads; i++) {
+        cache->workers[i].found.context = cache->context;
+    }
+    return cache->worker_counts && cache->workers && cache->covered;
+}
+
+static void destroy(assay_irradiance_cache *cache)
+{
+    const int threads = cache->workers ? assay_context_threads(cache->context) : 0;
+    for (int i = 0; i < threads; i++) {
+        assay_contributions_release(&cache->workers[i].found);
+    }
+    assay_record_store_destroy(cache->store);
+    assay_hemisphere_destroy(cache->context, cache->hemisphere);
+    assay_release(cache->context, cache->worker_counts);
+    assay_release(cache->context, cache->workers);
+    assay_release(cache->context, cache->covered);
+    assay_release(cache->context, cache->seen);
+    assay_release(cache->context, cache);
+}
+
+void assay_irradiance_cache_destroy(assay_irradiance_cache *cache)
+{
+    while (cache) {
+        assay_irradiance_cache *next = cache->next;
+        destroy(cache);
+        cache = next;
+    }
+}
+
+/* One level, without its next. */
+static assay_status create_level(const assay_world                     *world,
+                                 const assay_irradiance_cache_settings *settings, uint64_t seed,
+                                 int level, assay_irradiance_cache **cache_out)
+{
+    const assay_scene      *scene = world->scene;
+    assay_irradiance_cache *cache = assay_allocate(scene->context, 1, sizeof *cache);
+    if (!cache) {
+        return assay_fail_memory(scene->context, "the irradiance cache");
+    }
+    cache->world        = world;
+    cache->context      = scene->context;
+    cache->settings     = *settings;
+    cache->seed         = seed;
+    cache->level        = level;
+    cache->diagonal     = vec3_length(vec3_sub(scene->bounds_max, scene->bounds_min));
+    const size_t cells  = (size_t)settings->layout.theta * (size_t)settings->layout.phi;
+    cache->seen         = assay_allocate(cache->context, cells, sizeof *cache->seen);
+    assay_status status = allocate(cache) && cache->seen
+                              ? ASSAY_OK
+                              : assay_fail_memory(cache->context, "the irradiance cache");
+    status              = status
+                              ? status
+                              : assay_record_store_create(cache->context, &settings->rules, scene->bounds_min,
+                                                          scene->bounds_max, ASSAY_INDEX_OCTREE, &cache->store);
+    status              = status
+                              ? status
+                              : assay_hemisphere_create(cache->context, &settings->layout, &cache->hemisphere);
+    if (status != ASSAY_OK) {
+        destroy(cache);
+        return status;
+    }
+    *cache_out = cache;
+    return ASSAY_OK;
+}
+
+/* A level sees one bounce less than the one above, and ends where direct light is all that is left
+ * to ask. */
+assay_status assay_irradiance_cache_create(const assay_world                     *world,
+                                           const assay_irradiance_cache_settings *settings,
+                                           uint64_t seed, assay_irradiance_cache **cache_out)
+{
+    assay_irradiance_cache_settings at    = *settings;
+    assay_irradiance_cache         *first = NULL;
+    assay_irradiance_cache        **place = &first;
+    const int levels = settings->secondary == ASSAY_SECONDARY_CACHE ? settings->levels : 1;
+    for (int level = 0; level < levels && (level == 0 || at.path.bounces >= 2); level++) {
+        const assay_status status = create_level(world, &at, seed, level, place);
+        if (status != ASSAY_OK) {
+            assay_irradiance_cache_destroy(first);
+            return status;
+        }
+        place = &(*place)->next;
+        at.path.bounces -= at.path.bounces != ASSAY_BOUNCES_INF;
+    }
+    *cache_out = first;
+    return ASSAY_OK;
+}
+
+/* ---- asking ---- */
+
+static assay_status find(assay_irradiance_cache *cache, const assay_gather_site *site,
+                         uint32_t limit, int worker)
+{
+    return assay_record_store_find(cache->store, site->position, site->frame.z, limit,
+                                   &cache->workers[worker].found);
+}
+
+/* Eq. 2.9. */
+static bool knows_enough(const assay_irradiance_cache *cache, int worker)
+{
+    const assay_contributions *found = &cache->workers[worker].found;
+    return found->count > 0 && (cache->settings.rules.weight == ASSAY_WEIGHT_TABELLION ||
+                                found->weight >= cache->settings.rules.a);
+}
+
+/* HEURISTIC: where no record reaches, the one that would with the smallest a. */
+static const assay_record *nearest(const assay_irradiance_cache *cache, assay_vec3 position,
+                                   assay_vec3 normal, uint32_t limit)
+{
+    const assay_record_rules any         = {.a = 1e300, .weight = ASSAY_WEIGHT_WARD};
+    const uint32_t           all         = assay_record_store_count(cache->store);
+    const assay_record      *best        = NULL;
+    double                   best_weight = 0.0;
+    for (uint32_t i = 0; i < all && i < limit; i++) {
+        const assay_record *record = assay_record_store_at(cache->store, i);
+        const double        weight = assay_record_weight(record, &any, position, normal);
+        if (!best || weight > best_weight) {
+            best        = record;
+            best_weight = weight;
+        }
+    }
+    return best;
+}
+
+assay_status assay_irradiance_cache_look_up(assay_irradiance_cache *cache, assay_vec3 position,
+                                            assay_vec3 normal, uint32_t limit, int worker,
+                                            assay_rgb *irradiance_out)
+{
+    cache_worker      *own = &cache->workers[worker];
+    const assay_status status =
+        assay_record_store_find(cache->store, position, normal, limit, &own->found);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    if (own->found.count > 0) {
+        *irradiance_out =
+            assay_record_store_interpolate(cache->store, &own->found, position, normal);
+        return ASSAY_OK;
+    }
+    own->unserved++;
+    const assay_record *record = nearest(cache, position, normal, limit);
+    *irradiance_out            = record ? record->irradiance : rgb_grey(0.0);
+    return ASSAY_OK;
+}
+
+/* ---- making a record ---- */
+
+/* Where a path goes on: everything that leaves the vertex, direct light among it. */
+static assay_rgb light_by_path(void *user, int cell, assay_vertex *vertex, assay_random *random,
+                               int worker)
+{
+    const assay_irradiance_cache *cache = user;
+    assay_path_settings           path  = cache->settings.path;
+    (void)cell;
+    path.bounces = cache->settings.secondary == ASSAY_SECONDARY_DIRECT ? 1
+                   : path.bounces == ASSAY_BOUNCES_INF                 ? path.bounces
+                                                                       : path.bounces - 1;
+    const assay_path_light light =
+        assay_path_scatter(cache->world, &path, vertex, random, &cache->worker_counts[worker]);
+    return rgb_add(light.direct, light.indirect);
+}
+
+/* Where the next level answers, what it will be asked is collected first, ... */
+static assay_rgb note_point(void *user, int cell, assay_vertex *vertex, assay_random *random,
+                            int worker)
+{
+    assay_irradiance_cache *cache = user;
+    (void)random;
+    (void)worker;
+    assay_vertex_dress(cache->world, vertex);
+    const assay_bsdf_view view = assay_bsdf_seen_from(&vertex->bsdf, vertex->wo_local);
+    cache->seen[cell]          = (assay_cache_point){
+                 .site   = assay_gather_site_of(vertex),
+                 .wanted = !rgb_is_black(assay_bsdf_view_lambert(&view)),
+    };
+    return rgb_grey(0.0);
+}
+
+/* ... and then the same rays are traced again. */
+static assay_rgb light_by_cache(void *user, int cell, assay_vertex *vertex, assay_random *random,
+                                int worker)
+{
+    assay_irradiance_cache *cache  = user;
+    assay_ray_counts       *counts = &cache->worker_counts[worker];
+    assay_path_settings     path   = cache->next->settings.path;
+    (void)cell;
+    assay_vertex_dress(cache->world, vertex);
+    const assay_bsdf_view view    = assay_bsdf_seen_from(&vertex->bsdf, vertex->wo_local);
+    const assay_rgb       lambert = assay_bsdf_view_lambert(&view);
+    assay_rgb             cached  = rgb_grey(0.0);
+    if (!rgb_is_black(lambert)) {
+        const assay_gather_site site = assay_gather_site_of(vertex);
+        if (assay_irradiance_cache_look_up(cache->next, site.position, site.frame.z, UINT32_MAX,
+                                           worker, &cached) != ASSAY_OK) {
+            cache->workers[worker].refused = true;
+            return rgb_grey(NAN);
+        }
+        cached = rgb_scale(rgb_mul(cached, lambert), ASSAY_INV_PI);
+    }
+    if (vertex->bsdf.model != ASSAY_BSDF_LAMBERT) {
+        cached = rgb_add(cached,
+                         assay_path_indirect(cache->world, &path, vertex, lambert, random, counts));
+    }
+    path.bounces = 1;
+    return rgb_add(cached, assay_path_scatter(cache->world, &path, vertex, random, counts).direct);
+}
+
+static assay_status gather(assay_irradiance_cache *cache, const assay_gather_site *site)
+{
+    assay_gatherer gatherer = {.world         = cache->world,
+                               .seed          = cache->seed,
+                               .radiance      = light_by_path,
+                               .user          = cache,
+                               .worker_counts = cache->worker_counts};
+    const uint64_t item =
+        (uint64_t)cache->level << LEVEL_SHIFT | assay_record_store_count(cache->store);
+    if (cache->next) {
+        const size_t cells =
+            (size_t)cache->settings.layout.theta * (size_t)cache->settings.layout.phi;
+        memset(cache->seen, 0, cells * sizeof *cache->seen);
+        gatherer.radiance   = note_point;
+        assay_status status = assay_gather(&gatherer, site, item, cache->hemisphere);
+        status =
+            status ? status
+                   : assay_irradiance_cache_fill(cache->next, NULL, 0, 0, cells, cache->seen, NULL);
+        if (status != ASSAY_OK) {
+            return status;
+        }
+        gatherer.radiance = light_by_cache;
+    }
+    const assay_status status = assay_gather(&gatherer, site, item, cache->hemisphere);
+    for (int i = 0; status != ASSAY_OK && i < assay_context_threads(cache->context); i++) {
+        if (cache->workers[i].refused) {
+            return assay_fail_memory(cache->context, "a look into the irradiance cache");
+        }
+    }
+    return status;
+}
+
+static void to_world(const assay_frame3 *frame, assay_vec3 gradient[3])
+{
+    for (int c = 0; c < 3; c++) {
+        gradient[c] = frame3_to_world(frame, gradient[c]);
+    }
+}
+
+typedef struct {
+    assay_irradiance_cache *cache;
+    const assay_record     *record;
+    double                  radius; /* of the new record, so far */
+} neighbourhood;
+
+static double distance_to(const neighbourhood *n, uint32_t number)
+{
+    const assay_record *other = assay_record_store_at(n->cache->store, number);
+    return vec3_length(vec3_sub(other->position, n->record->position));
+}
+
+static void clamp_to_neighbour(void *user, uint32_t number)
+{
+    neighbourhood *n = user;
+    const double   bound =
+        assay_record_store_at(n->cache->store, number)->radius + distance_to(n, number);
+    n->radius = bound < n->radius ? bound : n->radius;
+}
+
+static void clamp_neighbour(void *user, uint32_t number)
+{
+    const neighbourhood *n     = user;
+    const double         bound = n->radius + distance_to(n, number);
+    if (bound < assay_record_store_at(n->cache->store, number)->radius) {
+        assay_record_store_shrink(n->cache->store, number, bound);
+    }
+}
+
+/* R_k from what was seen: limits of the settings last, the lower one strongest. */
+static assay_status find_radius(assay_irradiance_cache *cache, const assay_cache_point *point,
+                                assay_record *record)
+{
+    const assay_irradiance_cache_settings *s         = &cache->settings;
+    const bool                             tabellion = s->rules.weight == ASSAY_WEIGHT_TABELLION;
+    double radius = tabellion ? 0.5 * record->nearest : record->mean;
+    /* Where nothing is seen the light changes nowhere, as far as one can tell. */
+    radius = radius < cache->diagonal ? radius : cache->diagonal;
+    if (s->neighbour_clamp) {
+        neighbourhood      n = {cache, record, radius};
+        const assay_status status =
+            assay_record_store_near(cache->store, record->position, radius, clamp_to_neighbour, &n);
+        if (status != ASSAY_OK) {
+            return status;
+        }
+        radius = n.radius;
+    }
+    double least = s->r_min, most = s->r_max;
+    if (point->footprint > 0.0) {
+        least = fmax(least, s->r_min_pixels * point->footprint);
+        most  = fmin(most, s->r_max_pixels * point->footprint);
+    }
+    radius         = radius < most ? radius : most;
+    radius         = radius > least ? radius : least;
+    record->radius = radius > 0.0 ? radius : cache->world->offset;
+    return ASSAY_OK;
+}
+
+static assay_status make_record(assay_irradiance_cache *cache, const assay_cache_point *point)
+{
+    const assay_irradiance_cache_settings *s      = &cache->settings;
+    const assay_gather_site               *site   = &point->site;
+    assay_status                           status = gather(cache, site);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    assay_record record = {.position   = site->position,
+                           .normal     = site->frame.z,
+                           .mean       = assay_hemisphere_harmonic_mean(cache->hemisphere, s->mean),
+                           .nearest    = assay_hemisphere_nearest(cache->hemisphere),
+                           .irradiance = assay_hemisphere_irradiance(cache->hemisphere)};
+    assay_hemisphere_rotation_gradient(cache->hemisphere, record.rotation);
+    assay_hemisphere_translation_gradient(cache->hemisphere, s->normal_gradient,
+                                          record.translation);
+    to_world(&site->frame, record.rotation);
+    to_world(&site->frame, record.translation);
+    status = find_radius(cache, point, &record);
+    if (status == ASSAY_OK && s->neighbour_clamp) {
+        neighbourhood n = {cache, &record, record.radius};
+        status          = assay_record_store_near(cache->store, record.position, cache->diagonal,
+                                                  clamp_neighbour, &n);
+    }
+    return status ? status : assay_record_store_add(cache->store, &record);
+}
+
+/* ---- filling ---- */
+
+typedef struct {
+    assay_irradiance_cache  *cache;
+    const assay_cache_point *points;
+    size_t                   count;
+} fill_wave;
+
+enum { CHUNK = 64 };
+
+static assay_status look_at_points(void *user, uint64_t chunk, int worker)
+{
+    const fill_wave        *wave  = user;
+    assay_irradiance_cache *cache = wave->cache;
+    for (size_t i = chunk * CHUNK; i < (chunk + 1) * CHUNK && i < wave->count; i++) {
+        const assay_cache_point *point = &wave->points[i];
+        const assay_status       status =
+            point->wanted ? find(cache, &point->site, UINT32_MAX, worker) : ASSAY_OK;
+        if (status != ASSAY_OK) {
+            return status;
+        }
+        cache->covered[i] = !point->wanted || knows_enough(cache, worker);
+    }
+    return ASSAY_OK;
+}
+
+static assay_status serve(assay_irradiance_cache *cache, const assay_cache_point *point)
+{
+    const assay_status status = find(cache, &point->site, UINT32_MAX, 0);
+    if (status != ASSAY_OK || knows_enough(cache, 0) ||
+        assay_record_store_count(cache->store) >= cache->settings.max_records) {
+        return status;
+    }
+    return make_record(cache, point);
+}
+
+assay_status assay_irradiance_cache_fill(assay_irradiance_cache *cache, const char *phase,
+                                         uint64_t before, uint64_t total, size_t count,
+                                         const assay_cache_point *points, uint32_t *limits_out)
+{
+    assay_status status = ASSAY_OK;
+    for (size_t first = 0; first < count && status == ASSAY_OK; first += WAVE) {
+        fill_wave wave = {cache, points + first, count - first < WAVE ? count - first : WAVE};
+        status         = assay_parallel_for(cache->context, NULL, (wave.count + CHUNK - 1) / CHUNK,
+                                            look_at_points, &wave);
+        for (size_t i = 0; i < wave.count && status == ASSAY_OK; i++) {
+            if (!cache->covered[i]) {
+                status = serve(cache, &wave.points[i]);
+                if (status == ASSAY_OK && phase) {
+                    status = assay_progress(cache->context, phase, before + first + i, total);
+                }
+            }
+            if (limits_out) {
+                limits_out[first + i] = assay_record_store_count(cache->store);
+            }
+        }
+    }
+    if (status == ASSAY_ERR_MEMORY) {
+        return assay_fail_memory(cache->context, "the irradiance cache");
+    }
+    return status;
+}
+
+/* ---- what became of it ---- */
+
+assay_record_store *assay_irradiance_cache_store(assay_irradiance_cache *cache)
+{
+    return cache->store;
+}
+
+assay_irradiance_cache *assay_irradiance_cache_next(const assay_irradiance_cache *cache)
+{
+    return cache->next;
+}
+
+uint64_t assay_irradiance_cache_unserved(const assay_irradiance_cache *cache)
+{
+    uint64_t sum = 0;
+    for (int i = 0; i < assay_context_threads(cache->context); i++) {
+        sum += cache->workers[i].unserved;
+    }
+    return sum;
+}
+
+void assay_irradiance_cache_count_rays(const assay_irradiance_cache *cache,
+                                       assay_ray_counts             *counts)
+{
+    for (; cache; cache = cache->next) {
+        for (int i = 0; i < assay_context_threads(cache->context); i++) {
+            assay_ray_counts_add(counts, &cache->worker_counts[i]);
+        }
+    }
+}
