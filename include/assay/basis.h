@@ -4,9 +4,9 @@
  * towards +y).  Hemispherical bases live on z >= 0.  Formulas, sources and what the papers print
  * wrong: docs/methods/basis.md; signs, order, index and other people's conventions:
  * docs/conventions.md.  Everything is double arithmetic in a fixed order: the same bits on every
- * machine.  Nothing here prints; nothing keeps a state.  A NULL where a context, basis, map or array is
- * asked for is a programmer's error, as in all of assay: it is not looked for, but for what is said
- * to be allowed and for destroy functions. */
+ * machine.  Nothing here prints; nothing keeps a state.  A NULL where a context, basis, map or
+ * array is asked for is a programmer's error, as in all of assay: it is not looked for, but for
+ * what is said to be allowed and for destroy functions. */
 #ifndef ASSAY_BASIS_H
 #define ASSAY_BASIS_H
 
@@ -301,10 +301,11 @@ ASSAY_API assay_status assay_brdf_grid_create(const assay_basis *basis, assay_co
                                               int theta_nodes, int phi_nodes,
                                               assay_brdf_grid **grid_out);
 /* The same, to the bit, on the context's threads: f is called from several at once. */
-ASSAY_API assay_status assay_brdf_grid_create_parallel(const assay_basis *basis,
-                                                       assay_context *context, assay_brdf_function f,
-                                                       void *user, int side, int theta_nodes,
-                                                       int phi_nodes, assay_brdf_grid **grid_out);
+ASSAY_API assay_status assay_brdf_grid_create_parallel(const assay_basis  *basis,
+                                                       assay_context      *context,
+                                                       assay_brdf_function f, void *user, int side,
+                                                       int theta_nodes, int phi_nodes,
+                                                       assay_brdf_grid **grid_out);
 ASSAY_API void         assay_brdf_grid_destroy(assay_brdf_grid *grid);
 ASSAY_API int          assay_brdf_grid_side(const assay_brdf_grid *grid);
 /* Coefficients of texel (column, row), count of the basis; borrowed. */

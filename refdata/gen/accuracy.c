@@ -11,8 +11,8 @@
 #include <stdlib.h>
 
 #define KINDS 5
-static const basis_kind kinds[KINDS]     = {BASIS_SH, BASIS_HSH, BASIS_ZERNIKE, BASIS_MAKHOTKIN_SQRT,
-                                            BASIS_MAKHOTKIN};
+static const basis_kind kinds[KINDS] = {BASIS_SH, BASIS_HSH, BASIS_ZERNIKE, BASIS_MAKHOTKIN_SQRT,
+                                        BASIS_MAKHOTKIN};
 static const int        column_of[KINDS] = {0, 1, 3, 4, 7};
 
 struct accuracy {
@@ -111,8 +111,9 @@ static void add_band(arb_t sum, const accuracy *a, int k, slong l, int even_only
     arb_clear(c);
 }
 
-/* Gram matrix of SH with azimuthal number m on the hemisphere, l = m ... ACCURACY_ORDER - 1: products
- * are polynomials of degree 2 ACCURACY_ORDER - 2 at most in z, for which the rule is exact. */
+/* Gram matrix of SH with azimuthal number m on the hemisphere, l = m ... ACCURACY_ORDER - 1:
+ * products are polynomials of degree 2 ACCURACY_ORDER - 2 at most in z, for which the rule is
+ * exact. */
 static void gram(arb_ptr g, const basis *sh, slong m, slong precision)
 {
     const slong n = ACCURACY_ORDER - m, nodes = ACCURACY_ORDER;

@@ -4,8 +4,8 @@
  * Order n takes the functions with l < n (ERRATA T11): SH over the sphere with f = 0 below (T12),
  * ESH as sqrt(2) Y_lm with l + m even, orthonormal on the hemisphere (T10), Makhotkin times
  * sqrt(cos(theta)) (T18); LSOSH as the energy of the best fit by SH on the hemisphere; all over the
- * integral of f^2.  Makhotkin's plain functions have their weight cos(theta) in the coefficients and
- * in the energy that they are compared with. */
+ * integral of f^2.  Makhotkin's plain functions have their weight cos(theta) in the coefficients
+ * and in the energy that they are compared with. */
 #ifndef ACCURACY_H
 #define ACCURACY_H
 

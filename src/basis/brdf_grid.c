@@ -76,16 +76,17 @@ static assay_status tabulate(grid_maker *maker, size_t count)
 static assay_status fill_texel(const grid_maker *maker, assay_brdf_grid *grid, uint64_t at,
                                bool quiet)
 {
-    const int side = grid->side, column = (int)(at % (uint64_t)side), line = (int)(at / (uint64_t)side);
+    const int side = grid->side, column = (int)(at % (uint64_t)side),
+              line                 = (int)(at / (uint64_t)side);
     const size_t             count = grid->count;
     const assay_vec3         wo    = texel_direction(side, column, line);
     double                  *texel = grid->texels + at * count;
-    const assay_sphere_rule *rule = &maker->rule;
-    const double            *row  = maker->table;
+    const assay_sphere_rule *rule  = &maker->rule;
+    const double            *row   = maker->table;
     for (int i = 0; i < rule->rings; i++) {
         for (int j = 0; j < rule->sectors; j++, row += count) {
-            const assay_vec3   wi     = assay_sphere_rule_direction(rule, i, j);
-            const double       value  = maker->f(maker->user, wo, wi);
+            const assay_vec3 wi    = assay_sphere_rule_direction(rule, i, j);
+            const double     value = maker->f(maker->user, wo, wi);
             if (!isfinite(value)) {
                 texel[0] = NAN;
                 return quiet ? ASSAY_ERR_DOMAIN

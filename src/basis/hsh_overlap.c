@@ -162,9 +162,9 @@ static assay_status flush(const assay_basis *hsh, overlap *o)
 }
 
 /* Nodes enough for order n: in psi; and in a piece of s that is `length` long and reaches up to the
- * range's end.  A piece no longer than its distance from there needs LOWER nodes only.  What goes as
- * exp(k s) is at most exp(-k length) of its largest on the piece, and of that Gauss leaves
- * (k length)^48 (24!)^4 / (49 (48!)^3): together below 1e-30 for any k. */
+ * range's end.  A piece no longer than its distance from there needs LOWER nodes only.  What goes
+ * as exp(k s) is at most exp(-k length) of its largest on the piece, and of that Gauss leaves (k
+ * length)^48 (24!)^4 / (49 (48!)^3): together below 1e-30 for any k. */
 enum { LOWER = 24 };
 static int psi_nodes_for(int order) { return 2 * (2 * order + 10); }
 static int d_nodes_for(int order, double length)
@@ -177,7 +177,7 @@ static int d_nodes_for(int order, double length)
 enum { MAX_PIECES = 8 };
 static int cut(double range, double *ends)
 {
-    static const double FULL = 2.0;
+    static const double FULL  = 2.0;
     int                 count = 0;
     double              below = 0.0;
     ends[0]                   = range;
@@ -260,8 +260,8 @@ assay_status assay_hsh_overlap(const assay_basis *hsh, assay_context *context, d
     const double range = asinh_of(sqrt(width / scale));
     const int    order = assay_basis_order(hsh);
     overlap      o;
-    assay_status status = allocate(context, hsh, place_d_nodes(order, range, NULL, NULL),
-                                   psi_nodes_for(order), &o);
+    assay_status status =
+        allocate(context, hsh, place_d_nodes(order, range, NULL, NULL), psi_nodes_for(order), &o);
     if (status) {
         return status;
     }

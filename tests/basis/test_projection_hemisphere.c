@@ -225,9 +225,15 @@ static void texels_are_patches(void **state)
             b[c].data.f32[i] = a[c].data.f32[i / (W * FINER) / FINER * W + i % (W * FINER) / FINER];
         }
     }
-    for (int p = 0; p < POLES; p++) {
-        double frame[9];
-        assert_int_equal(assay_rotation_to_pole(poles[p], frame), ASSAY_OK);
+    /* The last poles' horizons all but touch a circle of latitude, from either side. */
+    for (int p = 0; p < POLES + 4; p++) {
+        const double tilt = PI / 6.0 + (p & 1 ? -1.0 : 1.0) * (p & 2 ? 1e-3 : 1e-7);
+        double       frame[9];
+        assert_int_equal(
+            assay_rotation_to_pole(
+                p < POLES ? poles[p] : (assay_vec3){0.6 * sin(tilt), cos(tilt), 0.8 * sin(tilt)},
+                frame),
+            ASSAY_OK);
         project(hsh, *state, one, -0.9, frame, coarse);
         project(hsh, *state, many, -0.9, frame, fine);
         for (int i = 0; i < 3 * HIGH * HIGH; i++) {

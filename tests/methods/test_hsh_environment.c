@@ -280,7 +280,7 @@ static void warns_of_emitters(void **state)
     const setting  settings[] = {{"nodes", "8"}, {"grid", "4"}, {"spp", "1"}, {NULL, NULL}};
     failing_memory memory     = {0};
     assay_context *context    = failing_context(&memory);
-    assay_scene   *scene = load(context, "scenes/cornell-box/cornell-box.gltf", NULL, 0.0);
+    assay_scene   *scene      = load(context, "scenes/cornell-box/cornell-box.gltf", NULL, 0.0);
     (void)state;
     assay_image_destroy(render(context, scene, "hsh-environment", NULL, settings));
     assert_non_null(strstr(memory.log, "nothing is lit by them"));

@@ -69,7 +69,7 @@ static const double MOST_STEPS = 1e12;
 static assay_status check_work(const hsh_environment *s)
 {
     const double texels = (double)s->side * s->side, nodes = 2.0 * s->nodes * s->nodes;
-    const double steps  = texels * nodes * (300.0 + (double)s->order * s->order);
+    const double steps = texels * nodes * (300.0 + (double)s->order * s->order);
     return steps <= MOST_STEPS
                ? ASSAY_OK
                : assay_fail(s->context, ASSAY_ERR_ARGUMENT,
@@ -161,10 +161,11 @@ static void warn_of_emitters(const hsh_environment *s, const assay_scene *scene)
         emits = assay_material_emits(&scene->materials[scene->shapes[i].material]);
     }
     if (emits) {
-        assay_inform(s->context, ASSAY_LOG_WARNING,
-                     "%s: has lights of its own; hsh-environment shows those that are surfaces, but "
-                     "nothing is lit by them",
-                     scene->path);
+        assay_inform(
+            s->context, ASSAY_LOG_WARNING,
+            "%s: has lights of its own; hsh-environment shows those that are surfaces, but "
+            "nothing is lit by them",
+            scene->path);
     }
 }
 
