@@ -33,8 +33,7 @@ static assay_status project_hemisphere(assay_context *context, const assay_basis
                                        double *coefficients)
 {
     double       frame[9];
-    assay_status status =
-        assay_rotation_to_pole(r->has_normal ? r->normal : (assay_vec3){0.0, 0.0, 1.0}, frame);
+    assay_status status = assay_rotation_to_pole(r->normal, frame);
     if (status != ASSAY_OK) {
         r->console->said = true;
         cli_complain(COMMAND, "--normal %g,%g,%g: it must be a unit vector", r->normal.x,
@@ -75,11 +74,14 @@ static assay_status report_map(assay_context *context, const assay_basis *basis,
         cli_print_functions(basis, names, CHANNELS, coefficients, r->hex);
         return ASSAY_OK;
     }
-    cJSON     *root     = cli_json_basis(basis);
-    cJSON     *channels = cJSON_CreateStringArray(names, CHANNELS);
-    const bool added    = root && channels && cJSON_AddItemToObject(root, "channels", channels);
-    const bool ok       = added && cli_json_add_rows(root, "values", coefficients, CHANNELS,
-                                                     assay_basis_count(basis), r->hex);
+    const double normal[3] = {r->normal.x, r->normal.y, r->normal.z};
+    cJSON       *root      = cli_json_basis(basis);
+    cJSON       *channels  = cJSON_CreateStringArray(names, CHANNELS);
+    const bool   added     = root && channels && cJSON_AddItemToObject(root, "channels", channels);
+    const bool   dome      = assay_basis_kind_is_hemispherical(r->basis);
+    const bool   ok =
+        added && (!dome || cli_json_add_list(root, "normal", normal, 3, r->hex)) &&
+        cli_json_add_rows(root, "values", coefficients, CHANNELS, assay_basis_count(basis), r->hex);
     if (!added) {
         cJSON_Delete(channels);
     }
@@ -203,5 +205,6 @@ static const basis_command SELF = {
 
 int cli_basis_project(int count, char **argv)
 {
-    return cli_basis_run(&SELF, count, argv, (basis_request){.basis = ASSAY_BASIS_SH});
+    return cli_basis_run(&SELF, count, argv,
+                         (basis_request){.basis = ASSAY_BASIS_SH, .normal = {0.0, 0.0, 1.0}});
 }
