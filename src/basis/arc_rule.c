@@ -63,8 +63,9 @@ assay_status assay_arc_rule_create(assay_context *context, int order, assay_arc_
     rule->context = context;
     for (int d = 0; d < DISTANCES; d++) {
         double length = 1.0;
-        for (int k = 0; k < LENGTHS; k++, length *= 0.5) {
+        for (int k = 0; k < LENGTHS; k++) {
             rule->nodes[d][k] = nodes_for(order, length, REACH[d].rho);
+            length *= 0.5;
         }
     }
     for (int n = 1; n <= MAX_NODES; n++) {

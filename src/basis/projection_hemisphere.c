@@ -309,7 +309,8 @@ static assay_status allocate(dome *d)
         d->context, (2 + MAX_NODES + 2 * CHANNELS) * d->count + order * (SERIES + 1) + 3 * columns,
         sizeof(double));
     if (!d->twin || !d->zonal || !d->factor) {
-        return assay_fail_memory(d->context, "the projection of an environment map");
+        (void)assay_fail_memory(d->context, "the projection of an environment map");
+        return ASSAY_ERR_MEMORY;
     }
     d->edge         = d->factor + d->count;
     d->values       = d->edge + d->count;
