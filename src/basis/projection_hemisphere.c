@@ -309,8 +309,7 @@ static assay_status allocate(dome *d)
         d->context, (2 + MAX_NODES + 2 * CHANNELS) * d->count + order * (SERIES + 1) + 3 * columns,
         sizeof(double));
     if (!d->twin || !d->zonal || !d->factor) {
-        (void)assay_fail_memory(d->context, "the projection of an environment map");
-        return ASSAY_ERR_MEMORY;
+        return assay_fail_memory(d->context, "the projection of an environment map");
     }
     d->edge         = d->factor + d->count;
     d->values       = d->edge + d->count;
@@ -407,12 +406,12 @@ assay_status assay_basis_project_environment_hemisphere(const assay_basis *basis
                            .order    = assay_basis_order(basis),
                            .rotation = rotation};
     assay_status status = prepare(&d, basis, map, frame);
-    if (status == ASSAY_OK) {
+    if (status == ASSAY_OK && d.twin) {
         prepare_functions(&d, basis);
         status = integrate(&d);
-    }
-    if (status == ASSAY_OK) {
-        memcpy(coefficients_out, d.sum, CHANNELS * d.count * sizeof *coefficients_out);
+        if (status == ASSAY_OK) {
+            memcpy(coefficients_out, d.sum, CHANNELS * d.count * sizeof *coefficients_out);
+        }
     }
     assay_analysis_destroy(d.analysis);
     assay_arc_rule_destroy(d.rule);

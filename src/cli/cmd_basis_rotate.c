@@ -13,7 +13,7 @@ static const cli_option OPTIONS[] = {
     BASIS_OPTION_ORDER,
     {"euler-zyz-deg", 0, "A,B,G", "R = Rz(A) Ry(B) Rz(G), active, right-handed"},
     {"beta-deg", 0, "B", "or about y alone: B > 0 moves the pole towards +x"},
-    {"via", 0, "WAY", "hsh: exact (default), table, conversion, digon, analytical"},
+    {"via", 0, "WAY", "hsh: exact (default); approximate: table, conversion, digon, analytical"},
     {"sh-order", 0, "N", "conversion: order of the SH between (default: the same)"},
     {"table-steps", 0, "N", "table: intervals over 90 degrees (default 16)"},
     BASIS_OPTION_CONVENTION,
