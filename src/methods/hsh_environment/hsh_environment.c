@@ -62,6 +62,22 @@ static assay_status make_bases(hsh_environment *s)
     return assay_clamped_cosine(s->sh_order, s->cosine);
 }
 
+/* Steps of a grid that are still waited for: some minutes of one processor. */
+static const double MOST_STEPS = 1e12;
+
+/* A texel takes a BRDF's value, some 300 multiplications, and n^2 of them, at each node. */
+static assay_status check_work(const hsh_environment *s)
+{
+    const double texels = (double)s->side * s->side, nodes = 2.0 * s->nodes * s->nodes;
+    const double steps = texels * nodes * (300.0 + (double)s->order * s->order);
+    return steps <= MOST_STEPS
+               ? ASSAY_OK
+               : assay_fail(s->context, ASSAY_ERR_ARGUMENT,
+                            "parameters 'grid' %d, 'nodes' %d and 'order' %d ask for %.1g steps a "
+                            "BRDF, hours of work: grid^2 * 2 nodes^2 * (300 + order^2) may be %.0g",
+                            s->side, s->nodes, s->order, steps, MOST_STEPS);
+}
+
 static assay_status create(assay_context *context, const assay_params *params, void **state_out)
 {
     hsh_environment *state = assay_allocate(context, 1, sizeof *state);
@@ -77,8 +93,8 @@ static assay_status create(assay_context *context, const assay_params *params, v
         .nodes      = assay_params_int(params, "nodes"),
         .brdf_in_sh = assay_params_choice(params, "brdf_basis") == 1,
     };
-    assay_status status = ASSAY_OK;
-    if (state->brdf_in_sh && state->order > state->sh_order) {
+    assay_status status = check_work(state);
+    if (status == ASSAY_OK && state->brdf_in_sh && state->order > state->sh_order) {
         status =
             assay_fail(context, ASSAY_ERR_ARGUMENT,
                        "parameter 'order' is %d, but with brdf_basis=sh there are only 'sh_order' "
@@ -138,6 +154,21 @@ static assay_status dump(const hsh_environment *s, const assay_frame *frame)
     return status;
 }
 
+static void warn_of_emitters(const hsh_environment *s, const assay_scene *scene)
+{
+    bool emits = scene->punctual_count > 0;
+    for (uint32_t i = 0; i < scene->shape_count && !emits; i++) {
+        emits = assay_material_emits(&scene->materials[scene->shapes[i].material]);
+    }
+    if (emits) {
+        assay_inform(
+            s->context, ASSAY_LOG_WARNING,
+            "%s: has lights of its own; hsh-environment shows those that are surfaces, but "
+            "nothing is lit by them",
+            scene->path);
+    }
+}
+
 static assay_status prepare(void *user, const assay_frame *frame)
 {
     hsh_environment   *s      = user;
@@ -154,6 +185,7 @@ static assay_status prepare(void *user, const assay_frame *frame)
                          scene->path);
         }
     }
+    warn_of_emitters(s, scene);
     if (status == ASSAY_OK && frame->dump) {
         status = dump(s, frame);
     }

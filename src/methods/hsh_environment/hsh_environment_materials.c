@@ -20,6 +20,7 @@ static double channel_of(assay_rgb c, int channel)
     return channel == 0 ? c.r : channel == 1 ? c.g : c.b;
 }
 
+/* Only reads its source, as threads share it. */
 static double evaluate(void *user, assay_vec3 wo, assay_vec3 wi)
 {
     const lobe_source *source = user;
@@ -82,8 +83,8 @@ static assay_status make_grid(const hsh_environment *s, lobe_source *source, int
                               assay_brdf_grid **grid_out)
 {
     source->channel = channel;
-    return assay_brdf_grid_create(s->brdf, s->context, evaluate, source, s->side, s->nodes,
-                                  2 * s->nodes, grid_out);
+    return assay_brdf_grid_create_parallel(s->brdf, s->context, evaluate, source, s->side, s->nodes,
+                                           2 * s->nodes, grid_out);
 }
 
 static assay_status make_material(const hsh_environment *s, const assay_scene *scene,
