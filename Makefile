@@ -113,9 +113,10 @@ test: deps-test ## build and run all tests
 	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(TESTS) $(BUILD)/make_scenes
 	@$(MUTANT_ENV) ASSAY_BIN=$(BUILD)/assay tests/tools/run.sh $(TEST_SCRIPTS) $(TESTS)
 
+MUTANT_LISTS = tests/mutants/*.txt
 mutants: deps-test ## break the source on purpose, also where `make test` does not
 	@$(MAKE) --no-print-directory -s -j$$(nproc) $(TESTS)
-	@for list in tests/mutants/*.txt; do $(MUTANT_ENV) MUTANTS=$$list \
+	@for list in $(MUTANT_LISTS); do $(MUTANT_ENV) MUTANTS=$$list \
 	   tests/tools/run.sh tests/mutants/test_mutants.sh || exit 1; done
 
 # ---- tests ----

@@ -288,6 +288,34 @@ static void waves_are_the_serial_algorithm(void **state)
     close_world(&three);
 }
 
+/* Eq. 2.9 literally: for a above 1 one record may not be enough, and the sum must reach a. */
+static void enough_is_the_sum_of_weights(void **state)
+{
+    (void)state;
+    lit_world                       w        = wall_world(1);
+    assay_irradiance_cache_settings settings = settings_of(4, 12);
+    settings.rules.a                         = 1.6;
+    settings.r_max                           = 0.2;
+    assay_cache_point      *points           = floor_points();
+    assay_irradiance_cache *cache            = make_cache(&w, &settings);
+    assay_contributions     found            = {0};
+    size_t                  several          = 0;
+    assert_int_equal(fill(cache, POINTS, points, NULL), ASSAY_OK);
+    for (int i = 0; i < POINTS; i++) {
+        assert_int_equal(assay_record_store_find(assay_irradiance_cache_store(cache),
+                                                 points[i].site.position, points[i].site.frame.z,
+                                                 UINT32_MAX, &found),
+                         ASSAY_OK);
+        assert_true(found.weight >= settings.rules.a);
+        several += found.count > 1 && found.items[0].weight < settings.rules.a;
+    }
+    assert_true(several > 0);
+    assay_contributions_release(&found);
+    assay_irradiance_cache_destroy(cache);
+    free(points);
+    close_world(&w);
+}
+
 /* ---- options ---- */
 
 static assay_irradiance_cache *filled(const lit_world                       *w,
@@ -404,6 +432,7 @@ int main(void)
         cmocka_unit_test(interpolation_converges),
         cmocka_unit_test(furnace),
         cmocka_unit_test(waves_are_the_serial_algorithm),
+        cmocka_unit_test(enough_is_the_sum_of_weights),
         cmocka_unit_test(radii_keep_their_limits),
         cmocka_unit_test(neighbours_are_clamped),
         cmocka_unit_test(records_are_limited),
