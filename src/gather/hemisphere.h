@@ -86,7 +86,7 @@ double assay_hemisphere_nearest(const assay_hemisphere *hemisphere);
 
 /* Coefficients of the incident radiance, W/(m2 sr), in a hemispherical basis that is orthonormal
  * under solid angle: HSH, ZERNIKE, MAKHOTKIN_SQRT, ESH.  UNIFORM strata, jittered, estimate them
- * without bias; COSINE strata count a cell by its solid angle.
+ * without bias; in COSINE strata, coarse at the horizon, radiance counts as constant in a cell.
  * coefficients_out: 3 rows (R, G, B) of count.  Errors: ARGUMENT (kind), MEMORY, DOMAIN (a cell's
  * direction is not of unit length or not above the horizon). */
 assay_status assay_hemisphere_project(const assay_hemisphere *hemisphere, assay_context *context,
@@ -94,8 +94,8 @@ assay_status assay_hemisphere_project(const assay_hemisphere *hemisphere, assay_
 
 /* Their translational gradients, W/(m3 sr) in the local frame, which moves without turning.
  * POINTS: what is seen are fixed points that keep their radiance; their solid angles and directions
- * move; wrong where they hide one another.  WALLS: the borders of the cells move as the nearer of
- * their neighbours does; tangential, z is 0, and exactly 0 where all cells have one radiance.
+ * move; wrong where they hide one another, and for UNIFORM strata.  WALLS: the borders of the cells
+ * move as the nearer of their neighbours does; exactly 0 where all cells have one radiance.
  * gradients_out: 3 rows of count.  Errors: as above. */
 typedef enum { ASSAY_GRADIENT_POINTS, ASSAY_GRADIENT_WALLS } assay_gradient_form;
 assay_status assay_hemisphere_project_gradient(const assay_hemisphere *hemisphere,
