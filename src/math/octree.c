@@ -1,14 +1,16 @@
 /* octree.c - the octree of [ward88]: an item is in one cube, and a walk makes the cubes larger.
  *
- * Invariant: an item is in the chain of exactly one node, whose cube holds its place and has a side
- * of at least twice its reach; so a point within the reach is within half a side of the cube.  An
- * item that no cube serves (outside the root's, or with too large a reach) is in the chain of the
- * root, which every walk goes over.
+ * Invariant: an item belongs to exactly one node, whose cube holds its place and has a side of at
+ * least twice its reach; so a point within the reach is within half a side of the cube.  An item
+ * that no cube serves (outside the root's, or with too large a reach) belongs to the root, which
+ * every walk goes over.
  *
  * An item is in the smallest such cube, so a level's cubes fit the reaches that they serve, and a
  * point is within at most eight grown cubes of a level.  The alternative, an item in every cube
- * that its sphere meets, would make a walk a plain descent, but needs eight times the entries
- * and more for a sphere that is large beside its cube.
+ * that its sphere meets, would make a walk a plain descent, but needs up to eight times the
+ * entries. Here a walk meets items in vain: on a plane, with sides of 2 to 4 reaches r, a disc of
+ * pi r^2 is sought in the square of two sides, so 5 to 20 in a hundred reach the point.  Therefore
+ * nodes keep items in blocks, places and reaches side by side, and most are done with there.
  *
  * Inside, the root is the unit cube.  Places become whole numbers of 2^-32, and cubes are then
  * prefixes of their bits: which cube holds a place is decided once, exactly, and no cube has a
@@ -27,21 +29,29 @@ static const uint32_t NONE = ASSAY_OCTREE_END;
 /* The root has number 0, and is no one's child. */
 typedef struct {
     uint32_t child[8]; /* 0: none; bit 0 of the index is x, 1 y, 2 z */
-    uint32_t item;     /* the first of its chain, or NONE            */
+    uint32_t block;    /* the first of its blocks, or NONE; the others are full */
 } tree_node;
 
+enum { SLOTS = 8 };
+
+/* Items of a node; slots from count on are 0. */
 typedef struct {
-    uint32_t next, previous; /* in the chain, or NONE */
-    uint32_t node;
-} tree_item;
+    double   x[SLOTS], y[SLOTS], z[SLOTS];
+    double   reach[SLOTS]; /* squared */
+    uint32_t number[SLOTS];
+    uint32_t count, node, next;
+} tree_block;
 
 struct assay_octree {
     assay_context *context;
-    double         low[3];  /* of the root's cube, m                     */
+    double         low[3];  /* of the root's cube, m                      */
     double         inverse; /* of its side, 1/m; 0 where there is no cube */
     tree_node     *nodes;
     size_t         node_count, node_capacity;
-    tree_item     *items;
+    tree_block    *blocks;
+    size_t         block_count, block_capacity;
+    uint32_t       free_block; /* the first of those that were given back */
+    uint32_t      *slots;      /* of each item: block * SLOTS + slot      */
     size_t         item_count, item_capacity;
 };
 
@@ -77,8 +87,9 @@ assay_status assay_octree_create(assay_context *context, assay_vec3 low, assay_v
         assay_octree_destroy(octree);
         return status;
     }
-    octree->node_count    = 1;
-    octree->nodes[0].item = NONE;
+    octree->node_count     = 1;
+    octree->nodes[0].block = NONE;
+    octree->free_block     = NONE;
     set_root(octree, low, high);
     *octree_out = octree;
     return ASSAY_OK;
@@ -88,7 +99,8 @@ void assay_octree_destroy(assay_octree *octree)
 {
     if (octree) {
         assay_release(octree->context, octree->nodes);
-        assay_release(octree->context, octree->items);
+        assay_release(octree->context, octree->blocks);
+        assay_release(octree->context, octree->slots);
         assay_release(octree->context, octree);
     }
 }
@@ -96,7 +108,8 @@ void assay_octree_destroy(assay_octree *octree)
 uint64_t assay_octree_bytes(const assay_octree *octree)
 {
     return sizeof *octree + octree->node_capacity * sizeof *octree->nodes +
-           octree->item_capacity * sizeof *octree->items;
+           octree->block_capacity * sizeof *octree->blocks +
+           octree->item_capacity * sizeof *octree->slots;
 }
 
 /* ---- where an item belongs ---- */
@@ -124,7 +137,7 @@ static uint32_t home(assay_octree *octree, assay_vec3 place, double reach)
     const double least = 2.0 * reach * octree->inverse;
     uint32_t     node  = 0;
     double       side  = 0.5;
-    for (int bit = DEPTH - 1; bit >= 0 && side >= least; bit--, side *= 0.5) {
+    for (int bit = DEPTH - 1; bit >= 0 && side >= least; bit--) {
         const unsigned child =
             (cell[0] >> bit & 1U) | (cell[1] >> bit & 1U) << 1 | (cell[2] >> bit & 1U) << 2;
         uint32_t next = octree->nodes[node].child[child];
@@ -133,71 +146,112 @@ static uint32_t home(assay_octree *octree, assay_vec3 place, double reach)
                 return node;
             }
             next                             = (uint32_t)octree->node_count++;
-            octree->nodes[next]              = (tree_node){.item = NONE};
+            octree->nodes[next]              = (tree_node){.block = NONE};
             octree->nodes[node].child[child] = next;
         }
         node = next;
+        side *= 0.5;
     }
     return node;
 }
 
-static void link_item(assay_octree *octree, uint32_t number, uint32_t node)
-{
-    tree_item *item = &octree->items[number];
-    *item           = (tree_item){octree->nodes[node].item, NONE, node};
-    if (item->next != NONE) {
-        octree->items[item->next].previous = number;
-    }
-    octree->nodes[node].item = number;
-}
-
-static void unlink_item(assay_octree *octree, uint32_t number)
-{
-    const tree_item item = octree->items[number];
-    if (item.next != NONE) {
-        octree->items[item.next].previous = item.previous;
-    }
-    if (item.previous != NONE) {
-        octree->items[item.previous].next = item.next;
-    } else {
-        octree->nodes[item.node].item = item.next;
-    }
-}
-
-/* Room for the longest way down. */
+/* Room for the longest way down and one more block. */
 static assay_status make_room(assay_octree *octree)
 {
-    if (octree->node_count > UINT32_MAX - DEPTH) {
+    if (octree->node_count > UINT32_MAX - DEPTH || octree->block_count >= UINT32_MAX / SLOTS) {
         return assay_fail(octree->context, ASSAY_ERR_LIMIT, "an octree has too many cubes");
     }
-    return assay_grow(octree->context, (void **)&octree->nodes, &octree->node_capacity,
-                      octree->node_count + DEPTH, sizeof *octree->nodes);
+    const assay_status status =
+        assay_grow(octree->context, (void **)&octree->nodes, &octree->node_capacity,
+                   octree->node_count + DEPTH, sizeof *octree->nodes);
+    return status == ASSAY_OK
+               ? assay_grow(octree->context, (void **)&octree->blocks, &octree->block_capacity,
+                            octree->block_count + 1, sizeof *octree->blocks)
+               : status;
+}
+
+/* Puts a block without items in front of a node's; make_room has been. */
+static void add_block(assay_octree *octree, uint32_t node)
+{
+    const uint32_t reused = octree->free_block;
+    const uint32_t block  = reused != NONE ? reused : (uint32_t)octree->block_count++;
+    if (reused != NONE) {
+        octree->free_block = octree->blocks[reused].next;
+    }
+    octree->blocks[block]     = (tree_block){.node = node, .next = octree->nodes[node].block};
+    octree->nodes[node].block = block;
+}
+
+static void put_item(assay_octree *octree, uint32_t node, uint32_t number, assay_vec3 place,
+                     double reach)
+{
+    if (octree->nodes[node].block == NONE ||
+        octree->blocks[octree->nodes[node].block].count == SLOTS) {
+        add_block(octree, node);
+    }
+    tree_block    *block = &octree->blocks[octree->nodes[node].block];
+    const uint32_t slot  = block->count++;
+    block->x[slot]       = place.x;
+    block->y[slot]       = place.y;
+    block->z[slot]       = place.z;
+    block->reach[slot]   = reach * reach;
+    block->number[slot]  = number;
+
+    octree->slots[number] = octree->nodes[node].block * SLOTS + slot;
+}
+
+/* The last item of the node's first block takes the place of the one that goes. */
+static void take_item(assay_octree *octree, uint32_t number)
+{
+    const uint32_t at    = octree->slots[number];
+    tree_block    *block = &octree->blocks[at / SLOTS];
+    tree_node     *node  = &octree->nodes[block->node];
+    const uint32_t first = node->block;
+    tree_block    *from  = &octree->blocks[first];
+    const uint32_t last = --from->count, to = at % SLOTS;
+
+    block->x[to]      = from->x[last];
+    block->y[to]      = from->y[last];
+    block->z[to]      = from->z[last];
+    block->reach[to]  = from->reach[last];
+    block->number[to] = from->number[last];
+
+    octree->slots[from->number[last]] = at;
+    if (from->count == 0) {
+        node->block        = from->next;
+        from->next         = octree->free_block;
+        octree->free_block = first;
+    }
 }
 
 assay_status assay_octree_add(assay_octree *octree, assay_vec3 place, double reach)
 {
-    if (octree->item_count >= NONE) {
+    if (octree->item_count >= ASSAY_OCTREE_END) {
         return assay_fail(octree->context, ASSAY_ERR_LIMIT, "an octree has too many items");
     }
     assay_status status = make_room(octree);
     if (status == ASSAY_OK) {
-        status = assay_grow(octree->context, (void **)&octree->items, &octree->item_capacity,
-                            octree->item_count + 1, sizeof *octree->items);
+        status = assay_grow(octree->context, (void **)&octree->slots, &octree->item_capacity,
+                            octree->item_count + 1, sizeof *octree->slots);
     }
     if (status == ASSAY_OK) {
-        link_item(octree, (uint32_t)octree->item_count, home(octree, place, reach));
+        put_item(octree, home(octree, place, reach), (uint32_t)octree->item_count, place, reach);
         octree->item_count++;
     }
     return status;
 }
 
-void assay_octree_shrink(assay_octree *octree, uint32_t number, assay_vec3 place, double reach)
+void assay_octree_shrink(assay_octree *octree, uint32_t number, double reach)
 {
-    (void)make_room(octree);
-    const uint32_t node = home(octree, place, reach);
-    if (node != octree->items[number].node) {
-        unlink_item(octree, number);
-        link_item(octree, number, node);
+    const bool       room  = make_room(octree) == ASSAY_OK;
+    const uint32_t   slot  = octree->slots[number] % SLOTS;
+    tree_block      *block = &octree->blocks[octree->slots[number] / SLOTS];
+    const assay_vec3 place = vec3(block->x[slot], block->y[slot], block->z[slot]);
+    const uint32_t   node  = room ? home(octree, place, reach) : block->node;
+    block->reach[slot]     = reach * reach;
+    if (node != block->node) {
+        take_item(octree, number);
+        put_item(octree, node, number, place, reach);
     }
 }
 
@@ -205,10 +259,13 @@ void assay_octree_shrink(assay_octree *octree, uint32_t number, assay_vec3 place
 
 static void start(assay_octree_walk *walk, const assay_octree *octree, assay_vec3 point)
 {
-    walk->octree  = octree;
-    walk->item    = NONE;
-    walk->waiting = 1;
-    to_unit(octree, point, walk->at);
+    walk->octree     = octree;
+    walk->point      = point;
+    walk->next_block = NONE;
+    walk->matches    = 0;
+    walk->looked     = 0;
+    walk->waiting    = 1;
+    to_unit(octree, point, walk->unit);
     walk->stack[0].low[0] = 0.0;
     walk->stack[0].low[1] = 0.0;
     walk->stack[0].low[2] = 0.0;
@@ -219,16 +276,18 @@ static void start(assay_octree_walk *walk, const assay_octree *octree, assay_vec
 void assay_octree_walk_about(assay_octree_walk *walk, const assay_octree *octree, assay_vec3 point)
 {
     start(walk, octree, point);
-    walk->fixed  = SLACK;
-    walk->growth = 0.5;
+    walk->margin  = SLACK;
+    walk->growth  = 0.5;
+    walk->squared = -1.0;
 }
 
 void assay_octree_walk_near(assay_octree_walk *walk, const assay_octree *octree, assay_vec3 point,
                             double distance)
 {
     start(walk, octree, point);
-    walk->fixed  = distance * octree->inverse * (1.0 + 0x1p-48) + SLACK;
-    walk->growth = 0.0;
+    walk->margin  = distance * octree->inverse * (1.0 + SLACK) + SLACK;
+    walk->growth  = 0.0;
+    walk->squared = distance * distance;
 }
 
 /* Which halves of a cube, grown, hold the point along one axis: bit 0 the lower, bit 1 the upper.
@@ -245,10 +304,10 @@ static void descend(assay_octree_walk *walk, const tree_node *node, const double
                     double side)
 {
     const double   half   = 0.5 * side;
-    const double   margin = walk->fixed + walk->growth * half;
-    const unsigned x      = halves(walk->at[0], low[0], half, margin);
-    const unsigned y      = halves(walk->at[1], low[1], half, margin);
-    const unsigned z      = halves(walk->at[2], low[2], half, margin);
+    const double   margin = walk->margin + walk->growth * half;
+    const unsigned x      = halves(walk->unit[0], low[0], half, margin);
+    const unsigned y      = halves(walk->unit[1], low[1], half, margin);
+    const unsigned z      = halves(walk->unit[2], low[2], half, margin);
     for (unsigned i = 0; i < 8; i++) {
         const unsigned inside = x >> (i & 1U) & y >> (i >> 1 & 1U) & z >> (i >> 2) & 1U;
         if (inside && node->child[i]) {
@@ -263,20 +322,53 @@ static void descend(assay_octree_walk *walk, const tree_node *node, const double
     }
 }
 
+/* Which items of a block hold the point: a bit each. */
+static unsigned match(const assay_octree_walk *walk, const tree_block *block)
+{
+    const assay_vec3 p = walk->point;
+    double           squared[SLOTS];
+    for (int i = 0; i < SLOTS; i++) {
+        const double x = p.x - block->x[i], y = p.y - block->y[i], z = p.z - block->z[i];
+        squared[i] = x * x + y * y + z * z;
+    }
+    unsigned matches = 0;
+    for (unsigned i = 0; i < block->count; i++) {
+        const double limit = walk->squared < 0.0 ? block->reach[i] : walk->squared;
+        matches |= (unsigned)(squared[i] <= limit) << i;
+    }
+    return matches;
+}
+
+static void enter_node(assay_octree_walk *walk)
+{
+    const int        top    = --walk->waiting;
+    const double     side   = walk->stack[top].side;
+    const double     low[3] = {walk->stack[top].low[0], walk->stack[top].low[1],
+                               walk->stack[top].low[2]};
+    const tree_node *node   = &walk->octree->nodes[walk->stack[top].node];
+    walk->next_block        = node->block;
+    descend(walk, node, low, side);
+}
+
 uint32_t assay_octree_walk_next(assay_octree_walk *walk)
 {
-    while (walk->item == NONE && walk->waiting > 0) {
-        const int        top    = --walk->waiting;
-        const double     side   = walk->stack[top].side;
-        const double     low[3] = {walk->stack[top].low[0], walk->stack[top].low[1],
-                                   walk->stack[top].low[2]};
-        const tree_node *node   = &walk->octree->nodes[walk->stack[top].node];
-        walk->item              = node->item;
-        descend(walk, node, low, side);
+    while (walk->matches == 0) {
+        if (walk->next_block != NONE) {
+            const tree_block *block = &walk->octree->blocks[walk->next_block];
+            walk->block             = walk->next_block;
+            walk->next_block        = block->next;
+            walk->looked += block->count;
+            walk->matches = match(walk, block);
+        } else if (walk->waiting > 0) {
+            enter_node(walk);
+        } else {
+            return ASSAY_OCTREE_END;
+        }
     }
-    const uint32_t number = walk->item;
-    if (number != NONE) {
-        walk->item = walk->octree->items[number].next;
+    unsigned slot = 0;
+    while (!(walk->matches >> slot & 1U)) {
+        slot++;
     }
-    return number;
+    walk->matches &= walk->matches - 1;
+    return walk->octree->blocks[walk->block].number[slot];
 }

@@ -1,9 +1,7 @@
-/* octree.h - which of many spheres may hold a point?
+/* octree.h - which of many spheres hold a point?
  *
- * An item is a place and a reach; its number is its place in the order of adding.  A walk over the
- * items about a point offers every item that is within its reach of the point, and some that are
- * not: the caller looks again.  It offers them in no order to lean on.  Walks may run in parallel
- * with one another, never with a change. */
+ * An item is a place and a reach; its number is its place in the order of adding.  Items come in no
+ * order to lean on.  Walks may run in parallel with one another, never with a change. */
 #ifndef ASSAY_MATH_OCTREE_H
 #define ASSAY_MATH_OCTREE_H
 
@@ -30,20 +28,23 @@ void         assay_octree_destroy(assay_octree *octree);
 /* reach: m, >= 0; may be INFINITY.  The octree is as it was on error.  Errors: MEMORY, LIMIT. */
 assay_status assay_octree_add(assay_octree *octree, assay_vec3 place, double reach);
 
-/* The item at that place, the one it was added with, has a smaller reach from now on.  It moves
- * down, unless memory for new cubes is refused: then as far as there are cubes, which costs time,
- * but changes no answer. */
-void assay_octree_shrink(assay_octree *octree, uint32_t number, assay_vec3 place, double reach);
+/* The item has a smaller reach from now on.  It moves down, unless memory is refused: then as far
+ * as there are cubes, which costs walks time, but changes no answer. */
+void assay_octree_shrink(assay_octree *octree, uint32_t number, double reach);
 
 uint64_t assay_octree_bytes(const assay_octree *octree);
 
 /* How far a walk has come; large (9 kB), so made once and started again. */
 typedef struct {
     const assay_octree *octree;
-    double              at[3];  /* the point, in the root's side */
-    double              fixed;  /* a cube counts within this and */
-    double              growth; /* this times its side           */
-    uint32_t            item;
+    assay_vec3          point;
+    double              unit[3]; /* the point in the root's cube    */
+    double              margin;  /* a cube counts within this and   */
+    double              growth;  /* this times its side             */
+    double              squared; /* of the distance; < 0: the reach */
+    uint32_t            block, next_block;
+    unsigned            matches; /* of the block, a bit an item */
+    uint32_t            looked;  /* items compared with the point so far: what a walk costs */
     int                 waiting;
     struct {
         double   low[3], side;
@@ -51,9 +52,11 @@ typedef struct {
     } stack[7 * ASSAY_OCTREE_DEPTH + 8];
 } assay_octree_walk;
 
-/* Over the items that may be within their reach of the point. */
+/* Over the items whose reach holds the point: d . d <= reach * reach as rounded, d = point - place.
+ * None where a coordinate is NaN. */
 void assay_octree_walk_about(assay_octree_walk *walk, const assay_octree *octree, assay_vec3 point);
-/* Over the items whose place may be within the distance of the point, whatever their reach. */
+/* Over the items whose place is within the distance of the point, whatever their reach:
+ * d . d <= distance * distance as rounded; distance >= 0. */
 void assay_octree_walk_near(assay_octree_walk *walk, const assay_octree *octree, assay_vec3 point,
                             double distance);
 /* The next item, or ASSAY_OCTREE_END. */

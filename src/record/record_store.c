@@ -100,8 +100,7 @@ void assay_record_store_shrink(assay_record_store *store, uint32_t number, doubl
     assay_record *record = &store->records[number];
     record->radius       = radius;
     if (store->octree) {
-        assay_octree_shrink(store->octree, number, record->position,
-                            assay_record_reach(record, &store->rules));
+        assay_octree_shrink(store->octree, number, assay_record_reach(record, &store->rules));
     }
 }
 
@@ -194,41 +193,56 @@ static double ask(const question *q, size_t number)
     return assay_record_weight(record, &q->store->rules, q->position, q->normal);
 }
 
-/* Puts what has an answer behind the list. */
-static assay_status collect(const question *q, size_t limit, assay_contributions *list,
-                            size_t *found_out)
+/* Puts a record that has an answer behind the list. */
+static assay_status consider(const question *q, size_t number, assay_contributions *list,
+                             size_t *found)
 {
-    const assay_record_store *store = q->store;
-    const size_t              end   = limit < store->count ? limit : store->count;
-    size_t                    found = 0;
-    assay_octree_walk         walk;
-    if (store->octree && q->distance > 0.0) {
-        assay_octree_walk_near(&walk, store->octree, q->position, q->distance);
-    } else if (store->octree) {
-        assay_octree_walk_about(&walk, store->octree, q->position);
+    const double weight = ask(q, number);
+    if (!(weight > 0.0)) {
+        return ASSAY_OK;
     }
-    for (size_t next = 0;; next++) {
-        const size_t number = store->octree ? assay_octree_walk_next(&walk) : next;
-        if (number >= (store->octree ? (size_t)ASSAY_OCTREE_END : end)) {
-            break;
-        }
-        const double weight = number < end ? ask(q, number) : 0.0;
-        if (weight > 0.0) {
-            if (!make_room(list, list->count + found + 1)) {
-                return ASSAY_ERR_MEMORY;
-            }
-            list->items[list->count + found++] = (assay_contribution){(uint32_t)number, weight};
-        }
+    if (!make_room(list, list->count + *found + 1)) {
+        return ASSAY_ERR_MEMORY;
     }
-    *found_out = found;
+    list->items[list->count + (*found)++] = (assay_contribution){(uint32_t)number, weight};
     return ASSAY_OK;
+}
+
+static assay_status consider_each(const question *q, size_t end, assay_contributions *list,
+                                  size_t *found)
+{
+    assay_status status = ASSAY_OK;
+    for (size_t number = 0; number < end && status == ASSAY_OK; number++) {
+        status = consider(q, number, list, found);
+    }
+    return status;
+}
+
+static assay_status consider_near(const question *q, size_t end, assay_contributions *list,
+                                  size_t *found)
+{
+    assay_octree_walk walk;
+    if (q->distance > 0.0) {
+        assay_octree_walk_near(&walk, q->store->octree, q->position, q->distance);
+    } else {
+        assay_octree_walk_about(&walk, q->store->octree, q->position);
+    }
+    assay_status status = ASSAY_OK;
+    uint32_t     number = assay_octree_walk_next(&walk);
+    while (number != ASSAY_OCTREE_END && status == ASSAY_OK) {
+        status = number < end ? consider(q, number, list, found) : ASSAY_OK;
+        number = assay_octree_walk_next(&walk);
+    }
+    return status;
 }
 
 static assay_status answer(const question *q, size_t limit, assay_contributions *list)
 {
-    size_t found              = 0;
-    list->context             = q->store->context;
-    const assay_status status = collect(q, limit, list, &found);
+    const size_t end   = limit < q->store->count ? limit : q->store->count;
+    size_t       found = 0;
+    list->context      = q->store->context;
+    const assay_status status =
+        (q->store->octree ? consider_near : consider_each)(q, end, list, &found);
     if (status != ASSAY_OK) {
         return status;
     }
