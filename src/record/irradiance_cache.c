@@ -16,6 +16,7 @@ enum { WAVE = 4096 };
 
 /* A level's hemispheres are numbered in streams of their own. */
 static const int LEVEL_SHIFT = 56;
+static const int BESIDE      = 64; /* added to the level of a cache beside another one */
 
 /* A worker's own; aligned apart by its size. */
 typedef struct {
@@ -38,7 +39,9 @@ struct assay_irradiance_cache {
     cache_worker                   *workers;
     bool                           *covered; /* WAVE                                */
     assay_irradiance_cache         *next;
-    assay_cache_point              *seen; /* what the cells see                      */
+    bool                            borrows_next; /* it belongs to another cache     */
+    assay_record_companion          companion;    /* keep NULL: none                 */
+    assay_cache_point              *seen;         /* what the cells see                      */
 };
 
 static bool allocate(assay_irradiance_cache *cache)
@@ -71,7 +74,7 @@ static void destroy(assay_irradiance_cache *cache)
 void assay_irradiance_cache_destroy(assay_irradiance_cache *cache)
 {
     while (cache) {
-        assay_irradiance_cache *next = cache->next;
+        assay_irradiance_cache *next = cache->borrows_next ? NULL : cache->next;
         destroy(cache);
         cache = next;
     }
@@ -136,6 +139,24 @@ assay_status assay_irradiance_cache_create(const assay_world                    
     return ASSAY_OK;
 }
 
+assay_status assay_irradiance_cache_create_beside(assay_irradiance_cache                *beside,
+                                                  const assay_irradiance_cache_settings *settings,
+                                                  const assay_record_companion          *companion,
+                                                  assay_irradiance_cache               **cache_out)
+{
+    assay_irradiance_cache *cache = NULL;
+    const assay_status      status =
+        create_level(beside->world, settings, beside->seed, beside->level + BESIDE, &cache);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    cache->companion    = *companion;
+    cache->next         = beside->next;
+    cache->borrows_next = true;
+    *cache_out          = cache;
+    return ASSAY_OK;
+}
+
 /* ---- asking ---- */
 
 static assay_status find(assay_irradiance_cache *cache, const assay_gather_site *site,
@@ -172,22 +193,34 @@ static const assay_record *nearest(const assay_irradiance_cache *cache, assay_ve
     return best;
 }
 
-assay_status assay_irradiance_cache_look_up(assay_irradiance_cache *cache, assay_vec3 position,
-                                            assay_vec3 normal, uint32_t limit, int worker,
-                                            assay_rgb *irradiance_out)
+assay_status assay_irradiance_cache_find(assay_irradiance_cache *cache, assay_vec3 position,
+                                         assay_vec3 normal, uint32_t limit, int worker,
+                                         const assay_contributions **found_out)
 {
     cache_worker      *own = &cache->workers[worker];
     const assay_status status =
         assay_record_store_find(cache->store, position, normal, limit, &own->found);
+    if (status == ASSAY_OK) {
+        own->unserved += own->found.count == 0;
+        *found_out = &own->found;
+    }
+    return status;
+}
+
+assay_status assay_irradiance_cache_look_up(assay_irradiance_cache *cache, assay_vec3 position,
+                                            assay_vec3 normal, uint32_t limit, int worker,
+                                            assay_rgb *irradiance_out)
+{
+    const assay_contributions *found = NULL;
+    const assay_status         status =
+        assay_irradiance_cache_find(cache, position, normal, limit, worker, &found);
     if (status != ASSAY_OK) {
         return status;
     }
-    if (own->found.count > 0) {
-        *irradiance_out =
-            assay_record_store_interpolate(cache->store, &own->found, position, normal);
+    if (found->count > 0) {
+        *irradiance_out = assay_record_store_interpolate(cache->store, found, position, normal);
         return ASSAY_OK;
     }
-    own->unserved++;
     const assay_record *record = nearest(cache, position, normal, limit);
     *irradiance_out            = record ? record->irradiance : rgb_grey(0.0);
     return ASSAY_OK;
@@ -371,6 +404,13 @@ static assay_status make_record(assay_irradiance_cache *cache, const assay_cache
         assay_record_store_near(cache->store, record.position, cache->diagonal, clamp_neighbour,
                                 &n);
     }
+    if (cache->companion.keep) {
+        const assay_status kept = cache->companion.keep(
+            cache->companion.user, assay_record_store_count(cache->store), cache->hemisphere);
+        if (kept != ASSAY_OK) {
+            return kept;
+        }
+    }
     return assay_record_store_add(cache->store, &record);
 }
 
@@ -461,7 +501,7 @@ uint64_t assay_irradiance_cache_unserved(const assay_irradiance_cache *cache)
 void assay_irradiance_cache_count_rays(const assay_irradiance_cache *cache,
                                        assay_ray_counts             *counts)
 {
-    for (; cache; cache = cache->next) {
+    for (; cache; cache = cache->borrows_next ? NULL : cache->next) {
         for (int i = 0; i < assay_context_threads(cache->context); i++) {
             assay_ray_counts_add(counts, &cache->worker_counts[i]);
         }
