@@ -32,7 +32,7 @@ static const assay_param_desc PARAMS[] = {
      "[gautron06] 3.4.2"},
     {"sh_order", ASSAY_PARAM_INT, "", "15", 1, ASSAY_BASIS_MAX_ORDER, NULL,
      "Order of the spherical harmonics of rotation=conversion.", "[gautron06] 3.4.1"},
-    {"glossy_accuracy", ASSAY_PARAM_REAL, "", "0.95", 0, 1, NULL,
+    {"glossy_accuracy", ASSAY_PARAM_REAL, "", "0.97", 0, 1, NULL,
      "A glossy material is cached where the order holds this share of its lobe's energy at 45 "
      "degrees, else it gets paths.",
      "[gautron06] eq. 3.32"},
