@@ -2,8 +2,8 @@
  *
  * In UNIFORM strata a cell's solid angle times the functions in the direction that was looked in
  * has no bias.  In COSINE strata the last one covers M^-1/2 of the hemisphere: the unbiased weight,
- * pi / (M N cos theta), has no variance there, and the solid angle times the functions in one
- * direction errs by 1 / M and much; so functions are integrated over the cells
+ * pi / (M N cos theta), has no finite variance there, and the solid angle times the functions in
+ * one direction errs by 1 / M and much; so functions are integrated over the cells
  * (docs/methods/gathering.md).
  *
  * Invariant: outputs are copied from sums of our own when all has gone well. */
@@ -75,10 +75,14 @@ static assay_status project_directions(const assay_hemisphere *h, assay_context 
     const size_t columns    = (size_t)h->layout.phi;
     assay_vec3  *directions = assay_allocate(context, columns, sizeof *directions);
     double *values = assay_allocate(context, columns * assay_basis_count(basis), sizeof *values);
-    assay_status status =
-        directions && values ? ASSAY_OK : assay_fail_memory(context, "a projection");
-    for (int j = 0; j < h->layout.theta && status == ASSAY_OK; j++) {
-        status = fail_direction(context, add_directions(h, basis, j, directions, values, sums), j);
+    assay_status status = ASSAY_OK;
+    if (directions && values) {
+        for (int j = 0; j < h->layout.theta && status == ASSAY_OK; j++) {
+            status =
+                fail_direction(context, add_directions(h, basis, j, directions, values, sums), j);
+        }
+    } else {
+        status = assay_fail_memory(context, "a projection");
     }
     assay_release(context, directions);
     assay_release(context, values);

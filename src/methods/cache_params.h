@@ -7,6 +7,7 @@
 
 /* Rows of a parameter table, read by assay_cache_params_read. */
 /* clang-format off */
+/* clang-format off */
 #define ASSAY_CACHE_PARAMS                                                                        \
     {"spp", ASSAY_PARAM_INT, "samples", "64", 1, 1e9, NULL,                                       \
      "Camera samples a pixel, and samples of its direct irradiance.",                             \
@@ -27,10 +28,10 @@
      "[gautron06] eq. 2.6"},                                                                      \
     {"theta_strata", ASSAY_PARAM_INT, "", "16", 2, ASSAY_STRATA_MAX, NULL,                        \
      "Cells of a hemisphere from pole to horizon (M).",                                           \
-     "[wardheckbert92]"},                                                                         \
+     "[ward-heckbert92]"},                                                                        \
     {"phi_strata", ASSAY_PARAM_INT, "", "50", 2, ASSAY_STRATA_MAX, NULL,                          \
      "Cells of a hemisphere around (N), best about pi M.",                                        \
-     "[wardheckbert92]"},                                                                         \
+     "[ward-heckbert92]"},                                                                        \
     {"strata", ASSAY_PARAM_CHOICE, "", "cosine", 0, 0, "cosine|uniform",                          \
      "Cells of equal cosine-weighted or of equal solid angle.",                                   \
      "[gautron06] 2.2.5"},                                                                        \
@@ -52,7 +53,7 @@
      "[gautron06] eq. 2.5, [tabellion04]"},                                                       \
     {"gradients", ASSAY_PARAM_CHOICE, "", "both", 0, 0, "none|rotation|translation|both",         \
      "What records extrapolate by.",                                                              \
-     "[wardheckbert92], [gautron06] eq. 2.7"},                                                    \
+     "[ward-heckbert92], [gautron06] eq. 2.7"},                                                   \
     {"normal_gradient", ASSAY_PARAM_BOOL, "", "off", 0, 0, NULL,                                  \
      "Translational gradients have a component along the normal, too.",                           \
      ""},                                                                                         \

@@ -8,10 +8,19 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/parallel.h"
+#include "math/sobol.h"
 #include "trace/camera_ray.h"
 #include "trace/visible_point.h"
 
 enum { WAVE = 4096, CHUNK = 16, CENTRE = -1 };
+
+/* Scrambles of a pixel. */
+enum { PURPOSE_RADIANCE, PURPOSE_IRRADIANCE };
+
+/* What a sample asks of the unit square: its place in the pixel; light, and choices. */
+typedef struct {
+    assay_point2 place, light, choice;
+} sample_points;
 
 /* Where the walk over the pixels stands. */
 typedef struct {
@@ -23,6 +32,7 @@ typedef struct {
     uint64_t           pixel;
     assay_cached_point point;
     assay_random       random; /* after the camera ray */
+    sample_points      points;
     assay_rgb          emission;
 } wave_point;
 
@@ -95,6 +105,30 @@ static double footprint_at(const assay_frame *frame, assay_vec3 position)
     return 2.0 * distance * camera->tan_half_yfov / frame->height;
 }
 
+/* Points of sequences that are scrambled anew for each pixel, so that its samples leave no part of
+ * pixel and lights out for long: noise that is not the caches' falls faster than that of
+ * independent samples, and is less than its variance says. */
+static sample_points points_of(const image_job *job, uint64_t pixel, uint32_t sample,
+                               uint64_t purpose)
+{
+    assay_random random =
+        assay_random_start(job->frame->seed, ASSAY_STAGE_SCRAMBLE, pixel, purpose);
+    const uint64_t place = assay_random_bits(&random), light = assay_random_bits(&random);
+    const uint64_t choice = assay_random_bits(&random), order = assay_random_bits(&random);
+    return (sample_points){
+        .place  = sobol_point(sample, place, (uint32_t)(place ^ order)),
+        .light  = sobol_point(sample, light, (uint32_t)order),
+        .choice = sobol_point(sample, choice, (uint32_t)(order >> 32)),
+    };
+}
+
+/* What the path tracer draws first: which light, where on it, which lobe. */
+static void choose_light(assay_random *random, const sample_points *points)
+{
+    const double u[4] = {points->choice.x, points->light.x, points->light.y, points->choice.y};
+    assay_random_choose(random, u);
+}
+
 static void look_through_centre(const image_job *job, int x, int y, wave_point *point, int worker)
 {
     const assay_frame *frame = job->frame;
@@ -108,11 +142,11 @@ static void look_through_sample(const image_job *job, int x, int y, wave_point *
     const assay_world *world = frame->world;
     point->random =
         assay_random_start(frame->seed, ASSAY_STAGE_CAMERA, point->pixel, (uint64_t)job->sample);
-    const double dx = assay_random_next(&point->random);
-    const double dy = assay_random_next(&point->random);
-    assay_vec3   origin, direction;
-    assay_hit    hit;
-    assay_camera_ray(frame->camera, x + dx, y + dy, frame->width, frame->height, &origin,
+    point->points = points_of(job, point->pixel, (uint32_t)job->sample, PURPOSE_RADIANCE);
+    const assay_point2 place = point->points.place;
+    assay_vec3         origin, direction;
+    assay_hit          hit;
+    assay_camera_ray(frame->camera, x + place.x, y + place.y, frame->width, frame->height, &origin,
                      &direction);
     point->point.hit = assay_world_closest(world, origin, direction, true, &point->random,
                                            &job->worker_counts[worker].camera, &hit);
@@ -173,8 +207,10 @@ static assay_status evaluate_centre(const image_job *job, size_t i, int worker)
     assay_vertex_receiver(site.position, &site.frame, site.ng, &receiver);
     for (uint32_t s = 0; s < job->settings->spp && status == ASSAY_OK; s++) {
         assay_random random = assay_random_start(frame->seed, ASSAY_STAGE_IRRADIANCE, at->pixel, s);
-        const assay_rgb e   = assay_path_scatter(frame->world, &direct, &receiver, &random,
-                                                 &job->worker_counts[worker])
+        const sample_points points = points_of(job, at->pixel, s, PURPOSE_IRRADIANCE);
+        choose_light(&random, &points);
+        const assay_rgb e = assay_path_scatter(frame->world, &direct, &receiver, &random,
+                                               &job->worker_counts[worker])
                                 .direct;
         if (!assay_film_add(job->film, at->pixel, ASSAY_FILM_IRRADIANCE, rgb_add(e, indirect)) ||
             !assay_film_add(job->film, at->pixel, ASSAY_FILM_IRRADIANCE_DIRECT, e) ||
@@ -201,6 +237,7 @@ static assay_status evaluate_sample(const image_job *job, size_t i, int worker)
     }
     if (point->hit && settings.bounces >= 1) {
         settings.bounces = 1;
+        choose_light(&at->random, &at->points);
         direct = rgb_add(direct, assay_path_scatter(job->frame->world, &settings, &point->vertex,
                                                     &at->random, counts)
                                      .direct);

@@ -357,8 +357,8 @@ static void clamp_neighbour(void *user, uint32_t number)
 }
 
 /* R_k from what was seen: limits of the settings last, the lower one strongest. */
-static double radius_of(assay_irradiance_cache *cache, const assay_cache_point *point,
-                        const assay_record *record)
+static assay_status find_radius(assay_irradiance_cache *cache, const assay_cache_point *point,
+                                assay_record *record)
 {
     const assay_irradiance_cache_settings *s         = &cache->settings;
     const bool                             tabellion = s->rules.weight == ASSAY_WEIGHT_TABELLION;
@@ -366,8 +366,12 @@ static double radius_of(assay_irradiance_cache *cache, const assay_cache_point *
     /* Where nothing is seen the light changes nowhere, as far as one can tell. */
     radius = radius < cache->diagonal ? radius : cache->diagonal;
     if (s->neighbour_clamp) {
-        neighbourhood n = {cache, record, radius};
-        assay_record_store_near(cache->store, record->position, radius, clamp_to_neighbour, &n);
+        neighbourhood      n = {cache, record, radius};
+        const assay_status status =
+            assay_record_store_near(cache->store, record->position, radius, clamp_to_neighbour, &n);
+        if (status != ASSAY_OK) {
+            return status;
+        }
         radius = n.radius;
     }
     double least = s->r_min, most = s->r_max;
@@ -375,16 +379,17 @@ static double radius_of(assay_irradiance_cache *cache, const assay_cache_point *
         least = fmax(least, s->r_min_pixels * point->footprint);
         most  = fmin(most, s->r_max_pixels * point->footprint);
     }
-    radius = radius < most ? radius : most;
-    radius = radius > least ? radius : least;
-    return radius > 0.0 ? radius : cache->world->offset;
+    radius         = radius < most ? radius : most;
+    radius         = radius > least ? radius : least;
+    record->radius = radius > 0.0 ? radius : cache->world->offset;
+    return ASSAY_OK;
 }
 
 static assay_status make_record(assay_irradiance_cache *cache, const assay_cache_point *point)
 {
     const assay_irradiance_cache_settings *s      = &cache->settings;
     const assay_gather_site               *site   = &point->site;
-    const assay_status                     status = gather(cache, site);
+    assay_status                           status = gather(cache, site);
     if (status != ASSAY_OK) {
         return status;
     }
@@ -398,20 +403,17 @@ static assay_status make_record(assay_irradiance_cache *cache, const assay_cache
                                           record.translation);
     to_world(&site->frame, record.rotation);
     to_world(&site->frame, record.translation);
-    record.radius = radius_of(cache, point, &record);
-    if (s->neighbour_clamp) {
+    status = find_radius(cache, point, &record);
+    if (status == ASSAY_OK && s->neighbour_clamp) {
         neighbourhood n = {cache, &record, record.radius};
-        assay_record_store_near(cache->store, record.position, cache->diagonal, clamp_neighbour,
-                                &n);
+        status          = assay_record_store_near(cache->store, record.position, cache->diagonal,
+                                                  clamp_neighbour, &n);
     }
-    if (cache->companion.keep) {
-        const assay_status kept = cache->companion.keep(
-            cache->companion.user, assay_record_store_count(cache->store), cache->hemisphere);
-        if (kept != ASSAY_OK) {
-            return kept;
-        }
+    if (status == ASSAY_OK && cache->companion.keep) {
+        status = cache->companion.keep(cache->companion.user,
+                                       assay_record_store_count(cache->store), cache->hemisphere);
     }
-    return assay_record_store_add(cache->store, &record);
+    return status ? status : assay_record_store_add(cache->store, &record);
 }
 
 /* ---- filling ---- */
