@@ -139,19 +139,29 @@ static void orders(void **state)
 
 enum { WALLS, LAMP, THING };
 
-/* A room with coloured walls and a ball of some material. */
-static assay_scene *room(assay_context *context, const char *material)
+/* A room with a ball of some material, or a screen that shows the camera its back. */
+static assay_scene *room_with(assay_context *context, const char *material, bool screen)
 {
     scene_builder *b     = scene_builder_create();
     const int      walls = scene_builder_diffuse(b, 0.6, 0.0, false);
     const int      lamp  = scene_builder_diffuse(b, 0.0, 12.0, false);
     const int      thing = scene_builder_material(b, material);
     scene_builder_box(b, walls, vec3(-1, -1, -1), vec3(1, 1, 1), true);
-    scene_builder_sphere(b, thing, vec3(0, -0.4, -0.2), 0.6, 2);
+    if (screen) {
+        scene_builder_quad(b, thing, vec3(-0.6, -0.9, -0.5), vec3(-0.5, 0.4, -0.6),
+                           vec3(0.6, 0.4, -0.3), vec3(0.5, -0.9, -0.2));
+    } else {
+        scene_builder_sphere(b, thing, vec3(0, -0.4, -0.2), 0.6, 2);
+    }
     scene_builder_quad(b, lamp, vec3(-0.3, 0.98, -0.3), vec3(0.3, 0.98, -0.3), vec3(0.3, 0.98, 0.3),
                        vec3(-0.3, 0.98, 0.3));
     scene_builder_camera(b, vec3(0.2, 0.1, 0.95), vec3(0, -0.4, -0.2), 1.0);
     return scene_builder_load(b, context, NULL);
+}
+
+static assay_scene *room(assay_context *context, const char *material)
+{
+    return room_with(context, material, false);
 }
 
 static const char *const GGX =
@@ -161,6 +171,10 @@ static const char *const WARD =
     "\"pbrMetallicRoughness\":{\"metallicFactor\":0},"
     "\"extras\":{\"assay\":{\"brdf\":\"ward\",\"diffuse\":[0.2,0.2,0.2],"
     "\"specular\":[0.5,0.5,0.5],\"alpha\":[0.2,0.5]}}";
+static const char *const WARD_BOTH =
+    "\"doubleSided\":true,\"pbrMetallicRoughness\":{\"metallicFactor\":0},"
+    "\"extras\":{\"assay\":{\"brdf\":\"ward\",\"diffuse\":[0.1,0.1,0.1],"
+    "\"specular\":[0.6,0.6,0.6],\"alpha\":[0.2,0.5]}}";
 static const char *const PLASTIC =
     "\"doubleSided\":true,\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.8,0.6,0.3,1],"
     "\"metallicFactor\":0,\"roughnessFactor\":0.6}";
@@ -196,6 +210,70 @@ static void lobes_and_rotations(void **state)
         assay_image_destroy(image);
     }
     assay_image_destroy(truth);
+    assay_scene_destroy(scene);
+    assay_context_destroy(context);
+}
+
+/* Seen from the back, too, the records are found: nothing is left to paths. */
+static void seen_from_the_back(void **state)
+{
+    (void)state;
+    failing_memory memory  = {0};
+    assay_context *context = failing_context(&memory);
+    assay_scene   *scene   = room_with(context, WARD_BOTH, true);
+    assay_image   *truth   = render(scene, PATH, NULL);
+    assay_image   *image   = render(scene, CACHE, NULL);
+    const seen     s       = look_at(image, truth, "Indirect.G", THING);
+    check("Ward from the back", &s, 0.03, 0.1, 0.06);
+    assert_string_equal(memory.log, "");
+    assay_image_destroy(image);
+    assay_image_destroy(truth);
+    assay_scene_destroy(scene);
+    assay_context_destroy(context);
+}
+
+static double rms(const assay_image *a, const assay_image *b, const char *name)
+{
+    assay_channel x, y, id;
+    double        squares = 0.0, sum = 0.0;
+    int           count = 0;
+    assert_true(assay_image_find_channel(a, name, &x) && assay_image_find_channel(b, name, &y) &&
+                assay_image_find_channel(b, "MaterialId", &id));
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        if (id.data.u32[i] == THING) {
+            const double d = (double)x.data.f32[i] - y.data.f32[i];
+            squares += d * d;
+            sum += y.data.f32[i];
+            count++;
+        }
+    }
+    return sqrt(squares * count) / sum;
+}
+
+/* The very same records and samples, turned by one way or another: what is left is the way. */
+static void rotations_against_exact(void **state)
+{
+    (void)state;
+    static const char *const ways[] = {"table", "conversion", "digon", "analytical"};
+    double                   error[4];
+    assay_context           *context   = measure_context(1);
+    assay_scene             *scene     = room(context, GGX);
+    const setting            exactly[] = {
+                   {"rotation", "exact"}, {"order", "5"}, {"spp", "1"}, {"a", "0.4"}, {NULL, NULL}};
+    assay_image *exact = render(scene, CACHE, exactly);
+    for (int i = 0; i < 4; i++) {
+        const setting more[] = {{"rotation", ways[i]}, {"order", "5"},    {"spp", "1"},
+                                {"a", "0.4"},          {"sh_order", "8"}, {NULL, NULL}};
+        assay_image  *image  = render(scene, CACHE, more);
+        error[i]             = rms(image, exact, "Indirect.G");
+        print_message("#| rotation %-10s differs from exact by %.5f\n", ways[i], error[i]);
+        assay_image_destroy(image);
+    }
+    assert_true(error[0] < 1e-3);
+    for (int i = 1; i < 4; i++) {
+        assert_true(error[i] > 3.0 * error[0] && error[i] < 0.1);
+    }
+    assay_image_destroy(exact);
     assay_scene_destroy(scene);
     assay_context_destroy(context);
 }
@@ -397,6 +475,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(orders),
         cmocka_unit_test(lobes_and_rotations),
+        cmocka_unit_test(seen_from_the_back),
+        cmocka_unit_test(rotations_against_exact),
         cmocka_unit_test(what_is_out_of_reach),
         cmocka_unit_test(few_records),
         cmocka_unit_test(same_bits_for_all_threads),

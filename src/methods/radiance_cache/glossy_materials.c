@@ -11,10 +11,16 @@
 
 static bool is_glossy(const assay_material *m)
 {
-    return m->model == ASSAY_MATERIAL_PHONG || m->model == ASSAY_MATERIAL_WARD ||
-           m->model == ASSAY_MATERIAL_WARD_PUBLISHED ||
-           (m->model == ASSAY_MATERIAL_PBR &&
-            (m->metallic > 0.0 || m->specular_factor > 0.0 || m->transmission > 0.0));
+    switch (m->model) {
+    case ASSAY_MATERIAL_PHONG:
+    case ASSAY_MATERIAL_WARD:
+    case ASSAY_MATERIAL_WARD_PUBLISHED: return !rgb_is_black(m->specular_color);
+    case ASSAY_MATERIAL_PBR:
+        return m->metallic > 0.0 || m->specular_factor > 0.0 || m->transmission > 0.0;
+    case ASSAY_MATERIAL_UNLIT:
+    case ASSAY_MATERIAL_LAMBERT: break;
+    }
+    return false;
 }
 
 /* The smaller of both planes' shares. */
