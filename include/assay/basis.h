@@ -4,7 +4,9 @@
  * towards +y).  Hemispherical bases live on z >= 0.  Formulas, sources and what the papers print
  * wrong: docs/methods/basis.md; signs, order, index and other people's conventions:
  * docs/conventions.md.  Everything is double arithmetic in a fixed order: the same bits on every
- * machine.  Nothing here prints; nothing keeps a state. */
+ * machine.  Nothing here prints; nothing keeps a state.  A NULL where a context, basis, map or
+ * array is asked for is a programmer's error, as in all of assay: it is not looked for, but for
+ * what is said to be allowed and for destroy functions. */
 #ifndef ASSAY_BASIS_H
 #define ASSAY_BASIS_H
 
@@ -148,6 +150,17 @@ ASSAY_API assay_status assay_basis_project_environment(const assay_basis *basis,
                                                        const assay_image *map, double rotation,
                                                        double *coefficients_out);
 
+/* The same map in a hemispherical basis: the integrals over the hemisphere z >= 0 of a frame, its
+ * texels cut at the horizon.  frame: rotation from the hemisphere's frame to the world's, row by
+ * row (columns: where its x, y and z axes lie in the world); NULL: the world's own.  Along the
+ * edges of texels by Gauss, with nodes that leave less than rounding; what rounding leaves is below
+ * 1e-13 of the largest radiance (docs/methods/basis-accuracy.md).  Errors: ARGUMENT (kind SH,
+ * channels missing), DOMAIN (texels not finite, frame not a rotation, LSOSH beyond order 14),
+ * MEMORY, CANCELLED. */
+ASSAY_API assay_status assay_basis_project_environment_hemisphere(
+    const assay_basis *basis, assay_context *context, const assay_image *map, double rotation,
+    const double *frame, double *coefficients_out);
+
 /* A_l of the clamped cosine, l < order: irradiance = sum of A_l c_l^m Y_l^m(n) [kontkanen] table 1;
  * pi, 2 pi / 3, pi / 4, 0, -pi / 24, ...  Errors: ARGUMENT (order). */
 ASSAY_API assay_status assay_clamped_cosine(int order, double *a_out);
@@ -168,6 +181,10 @@ ASSAY_API double assay_basis_dot(const assay_basis *basis, const double *a, cons
  * towards +x.  rad. */
 ASSAY_API void assay_rotation_from_euler_zyz(double alpha, double beta, double gamma,
                                              double rotation_out[9]);
+
+/* The smallest rotation that takes +z to `pole` (for -z: the half turn about y); its columns are a
+ * frame about that direction.  Errors: DOMAIN (not of unit length). */
+ASSAY_API assay_status assay_rotation_to_pole(assay_vec3 pole, double rotation_out[9]);
 
 /* D with c' = D c: coefficients of f(R^-1 w) from those of f; count * count, block-diagonal
  * (docs/methods/basis-rotation.md).  For SH (any convention) and LSOSH.  R may be off by rounding:
@@ -258,6 +275,13 @@ typedef struct {
 /* Value for light from wi (unit; 0 below the horizon).  Errors: DOMAIN. */
 ASSAY_API assay_status assay_lobe_value(const assay_lobe *lobe, assay_vec3 wi, double *value_out);
 
+/* Coefficients of a lobe, for SH, too, integrated over the hemisphere, below which it is 0; with
+ * nodes that follow the lobe, however narrow, doubled until no coefficient moves by more than 1e-14
+ * of the largest (1e-11 at the last).  Errors: DOMAIN (the lobe; it does not settle; LSOSH beyond
+ * order 14), MEMORY, CANCELLED. */
+ASSAY_API assay_status assay_basis_project_lobe(const assay_basis *basis, assay_context *context,
+                                                const assay_lobe *lobe, double *coefficients_out);
+
 /* Share of the lobe's energy that the basis captures (eq. 3.32, made well defined: docs/methods/
  * basis-accuracy.md), for orders 1 ... basis order: accuracy_out[order - 1], with the number of
  * functions that this order of the basis has in count_out (may be NULL).  LSOSH: at any order.
@@ -276,6 +300,12 @@ ASSAY_API assay_status assay_brdf_grid_create(const assay_basis *basis, assay_co
                                               assay_brdf_function f, void *user, int side,
                                               int theta_nodes, int phi_nodes,
                                               assay_brdf_grid **grid_out);
+/* The same, to the bit, on the context's threads: f is called from several at once. */
+ASSAY_API assay_status assay_brdf_grid_create_parallel(const assay_basis  *basis,
+                                                       assay_context      *context,
+                                                       assay_brdf_function f, void *user, int side,
+                                                       int theta_nodes, int phi_nodes,
+                                                       assay_brdf_grid **grid_out);
 ASSAY_API void         assay_brdf_grid_destroy(assay_brdf_grid *grid);
 ASSAY_API int          assay_brdf_grid_side(const assay_brdf_grid *grid);
 /* Coefficients of texel (column, row), count of the basis; borrowed. */

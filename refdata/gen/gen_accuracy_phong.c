@@ -29,24 +29,29 @@ static void add_lobe(void *user, const lune_point *p, slong precision)
     accuracy_add(s->a, s->cosines, p->z, p->root_z, f, precision);
     acb_pow_ui(f, p->z2, 10, precision);
     acb_mul(f, f, p->weight, precision);
-    accuracy_add_energy(s->a, acb_realref(f), precision);
+    accuracy_add_energy(s->a, acb_realref(f), acb_realref(p->z), precision);
     acb_clear(f);
 }
 
 static void bound_lobe(void *user, arb_t out, const lune_point *p, slong precision)
 {
     state *s = user;
-    mag_t  f, b;
+    mag_t  f, b, g;
     mag_init(f);
+    mag_init(g);
     mag_init(b);
     basis_azimuth(s->cosines, s->sines, ACCURACY_ORDER, p->x, p->y, precision);
     accuracy_bound(b, s->a, s->cosines, p->z, p->root_z, precision);
     acb_get_mag(f, p->z2);
     mag_pow_ui(f, f, 5);
     mag_max(b, b, f);
+    acb_get_mag(g, p->z);
+    mag_mul(g, g, f);
+    mag_max(b, b, g);
     arb_zero(out);
     mag_mul(arb_radref(out), f, b);
     mag_clear(f);
+    mag_clear(g);
     mag_clear(b);
 }
 
@@ -74,9 +79,9 @@ static void add_normal(state *s, slong precision)
         arb_mul_2exp_si(weight, weight, 1);
         acb_mul_arb(f, f, weight, precision);
         accuracy_add(s->a, s->cosines, z, root_z, f, precision);
-        acb_pow_ui(z, z, 5, precision);
-        acb_mul(f, f, z, precision);
-        accuracy_add_energy(s->a, acb_realref(f), precision);
+        acb_pow_ui(root_z, z, 5, precision);
+        acb_mul(f, f, root_z, precision);
+        accuracy_add_energy(s->a, acb_realref(f), acb_realref(z), precision);
     }
     acb_clear(z);
     acb_clear(root_z);
@@ -121,7 +126,7 @@ int main(int argc, char **argv)
                            "30, 60, 80 degrees; order n: l < n; SH of the lobe that is 0 below the horizon; "
                            "ESH: sqrt(2) Y_lm, l + m even; makhotkin_sqrt: times sqrt(cos theta)",
              .keys  = "theta order",
-             .values  = "sh hsh esh zernike makhotkin_sqrt energy (integral of the lobe squared)",
+             .values  = ACCURACY_VALUES,
              .rows    = 4 * ACCURACY_ORDER,
              .columns = ACCURACY_COLUMNS};
     ref_table *table = ref_create(argc > 1 ? argv[1] : ".", &header);

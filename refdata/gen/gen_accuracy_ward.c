@@ -196,18 +196,19 @@ static void bound_bases(mag_t out, const accuracy *a, double rho, double eta, sl
     mag_clear(size);
 }
 
-/* Largest |weight f| max(|f|, largest |B|). */
+/* Largest |weight f| max(|f|, |z f|, largest |B|). */
 static void bound_integrands(mag_t out, const accuracy *a, const lobe *f, double rho, double eta)
 {
     const slong precision = 64, n = 512, segments = 256;
     acb_t       s, cosine, value;
     ring        r;
-    mag_t       bases, size, weight;
+    mag_t       bases, size, weight, height;
     acb_init(s);
     acb_init(cosine);
     acb_init(value);
     ring_init(&r);
     mag_init(bases);
+    mag_init(height);
     mag_init(size);
     mag_init(weight);
     mag_zero(out);
@@ -221,6 +222,9 @@ static void bound_integrands(mag_t out, const accuracy *a, const lobe *f, double
             acb_get_mag(weight, r.weight);
             acb_get_mag(size, value);
             mag_mul(weight, weight, size);
+            acb_get_mag(height, r.z);
+            mag_mul(height, height, size);
+            mag_max(size, size, height);
             mag_max(size, size, bases);
             mag_mul(size, size, weight);
             mag_max(out, out, size);
@@ -231,6 +235,7 @@ static void bound_integrands(mag_t out, const accuracy *a, const lobe *f, double
     acb_clear(value);
     ring_clear(&r);
     mag_clear(bases);
+    mag_clear(height);
     mag_clear(size);
     mag_clear(weight);
 }
@@ -360,7 +365,7 @@ static void add_all(accuracy *a, const lobe *f, slong nu, slong np, slong precis
         acb_mul_arb(w, w, weight, precision);
         accuracy_add(a, cosines, r.z, r.root_z, w, precision);
         arb_mul(squares, squares, acb_realref(w), precision);
-        accuracy_add_energy(a, squares, precision);
+        accuracy_add_energy(a, squares, acb_realref(r.z), precision);
     }
     _arb_vec_clear(table, np);
     _acb_vec_clear(cosines, ACCURACY_ORDER);
@@ -445,7 +450,7 @@ int main(int argc, char **argv)
                            "n: l < n; SH of the lobe that is 0 below the horizon; ESH: sqrt(2) Y_lm, l + m "
                            "even; makhotkin_sqrt: times sqrt(cos theta)",
              .keys  = "theta order",
-             .values  = "sh hsh esh zernike makhotkin_sqrt energy (integral of the lobe squared)",
+             .values  = ACCURACY_VALUES,
              .rows    = 3 * ACCURACY_ORDER,
              .columns = ACCURACY_COLUMNS};
     ref_table *table = ref_create(argc > 1 ? argv[1] : ".", &header);

@@ -210,13 +210,13 @@ static void write_tables(const char *folder, slong order, const slong *degrees, 
 
 int main(int argc, char **argv)
 {
-    static const slong small[] = {10, 30, 45, 60, 90, -30, 1, 120}, large[] = {30};
+    static const slong small[] = {10, 30, 45, 60, 90, -30, 1, 120}, large[] = {30, 1, 60, 120};
 
     const char *folder = argc > 1 ? argv[1] : ".";
     check_first(0.25);
     check_first(-2.0);
     write_tables(folder, 6, small, 8);
-    write_tables(folder, 10, large, 1);
+    write_tables(folder, 10, large, 4);
     flint_cleanup();
     return 0;
 }

@@ -63,6 +63,25 @@ assay_status assay_analysis_evaluate(const assay_analysis *a, assay_vec3 directi
     return status;
 }
 
+assay_status assay_analysis_evaluate_many(const assay_analysis *a, size_t direction_count,
+                                          const assay_vec3 *directions, double *values_out)
+{
+    if (a->fit) {
+        for (size_t i = 0; i < direction_count; i++) {
+            assay_least_squares_evaluate(a->fit, directions[i], values_out + i * a->count);
+        }
+        return ASSAY_OK;
+    }
+    const assay_status status =
+        assay_basis_evaluate_many(a->basis, direction_count, directions, values_out);
+    for (size_t i = 0; status == ASSAY_OK && a->cosine_weight && i < direction_count; i++) {
+        for (size_t k = 0; k < a->count; k++) {
+            values_out[i * a->count + k] *= directions[i].z;
+        }
+    }
+    return status;
+}
+
 bool assay_analysis_needs_finish(const assay_analysis *a) { return a->fit != NULL; }
 
 void assay_analysis_finish(const assay_analysis *a, double *coefficients)

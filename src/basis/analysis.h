@@ -21,6 +21,10 @@ void         assay_analysis_destroy(assay_analysis *analysis);
 assay_status assay_analysis_evaluate(const assay_analysis *analysis, assay_vec3 direction,
                                      double *values_out);
 
+/* The same for many directions: rows of count. */
+assay_status assay_analysis_evaluate_many(const assay_analysis *analysis, size_t direction_count,
+                                          const assay_vec3 *directions, double *values_out);
+
 /* Whether finish changes anything: it is linear, so it may also be applied to single samples. */
 bool assay_analysis_needs_finish(const assay_analysis *analysis);
 void assay_analysis_finish(const assay_analysis *analysis, double *coefficients);

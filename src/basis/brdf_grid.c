@@ -19,6 +19,7 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/numerics.h"
+#include "core/parallel.h"
 
 enum { MAX_SIDE = 4096 };
 
@@ -71,17 +72,25 @@ static assay_status tabulate(grid_maker *maker, size_t count)
     return ASSAY_OK;
 }
 
-static assay_status fill_texel(const grid_maker *maker, assay_vec3 wo, size_t count, double *texel)
+/* quiet: without a message, which only one thread may leave. */
+static assay_status fill_texel(const grid_maker *maker, assay_brdf_grid *grid, uint64_t at,
+                               bool quiet)
 {
-    const assay_sphere_rule *rule = &maker->rule;
-    const double            *row  = maker->table;
+    const int side = grid->side, column = (int)(at % (uint64_t)side),
+              line                 = (int)(at / (uint64_t)side);
+    const size_t             count = grid->count;
+    const assay_vec3         wo    = texel_direction(side, column, line);
+    double                  *texel = grid->texels + at * count;
+    const assay_sphere_rule *rule  = &maker->rule;
+    const double            *row   = maker->table;
     for (int i = 0; i < rule->rings; i++) {
         for (int j = 0; j < rule->sectors; j++, row += count) {
-            const assay_vec3   wi     = assay_sphere_rule_direction(rule, i, j);
-            const double       value  = maker->f(maker->user, wo, wi);
-            const assay_status status = assay_projection_check(maker->context, &value, 1, wi);
-            if (status != ASSAY_OK) {
-                return status;
+            const assay_vec3 wi    = assay_sphere_rule_direction(rule, i, j);
+            const double     value = maker->f(maker->user, wo, wi);
+            if (!isfinite(value)) {
+                texel[0] = NAN;
+                return quiet ? ASSAY_ERR_DOMAIN
+                             : assay_projection_check(maker->context, &value, 1, wi);
             }
             for (size_t k = 0; k < count; k++) {
                 texel[k] += value * row[k];
@@ -92,16 +101,43 @@ static assay_status fill_texel(const grid_maker *maker, assay_vec3 wo, size_t co
     return ASSAY_OK;
 }
 
-static assay_status fill_grid(grid_maker *maker, assay_brdf_grid *grid)
+typedef struct {
+    const grid_maker *maker;
+    assay_brdf_grid  *grid;
+} grid_job;
+
+static assay_status fill_item(void *user, uint64_t index, int worker)
 {
-    assay_status status = tabulate(maker, grid->count);
-    for (int row = 0; row < grid->side && status == ASSAY_OK; row++) {
-        status = assay_progress(maker->context, "project", (uint64_t)row, (uint64_t)grid->side);
-        for (int column = 0; column < grid->side && status == ASSAY_OK; column++) {
-            const size_t at = (size_t)row * (size_t)grid->side + (size_t)column;
-            status = fill_texel(maker, texel_direction(grid->side, column, row), grid->count,
-                                grid->texels + at * grid->count);
+    const grid_job *job = user;
+    (void)worker;
+    return fill_texel(job->maker, job->grid, index, true);
+}
+
+/* The first texel that failed again, for its message. */
+static assay_status explain(const grid_maker *maker, assay_brdf_grid *grid, uint64_t texels)
+{
+    for (uint64_t i = 0; i < texels; i++) {
+        if (isnan(grid->texels[i * grid->count])) {
+            return fill_texel(maker, grid, i, false);
         }
+    }
+    return ASSAY_ERR_INTERNAL;
+}
+
+static assay_status fill_grid(grid_maker *maker, assay_brdf_grid *grid, bool parallel)
+{
+    const uint64_t side = (uint64_t)grid->side, texels = side * side;
+    assay_status   status = tabulate(maker, grid->count);
+    if (parallel) {
+        grid_job job = {maker, grid};
+        status       = status == ASSAY_OK
+                           ? assay_parallel_for(maker->context, "project", texels, fill_item, &job)
+                           : status;
+        return status == ASSAY_ERR_DOMAIN ? explain(maker, grid, texels) : status;
+    }
+    for (uint64_t i = 0; i < texels && status == ASSAY_OK; i++) {
+        status = i % side == 0 ? assay_progress(maker->context, "project", i, texels) : ASSAY_OK;
+        status = status == ASSAY_OK ? fill_texel(maker, grid, i, false) : status;
     }
     return status;
 }
@@ -125,9 +161,9 @@ static assay_status prepare(grid_maker *maker, assay_brdf_grid *grid, int theta_
                                         : assay_fail_memory(maker->context, "a BRDF grid");
 }
 
-assay_status assay_brdf_grid_create(const assay_basis *basis, assay_context *context,
-                                    assay_brdf_function f, void *user, int side, int theta_nodes,
-                                    int phi_nodes, assay_brdf_grid **grid_out)
+static assay_status create(const assay_basis *basis, assay_context *context, assay_brdf_function f,
+                           void *user, int side, int theta_nodes, int phi_nodes, bool parallel,
+                           assay_brdf_grid **grid_out)
 {
     if (side < 1 || side > MAX_SIDE) {
         return assay_fail(context, ASSAY_ERR_ARGUMENT,
@@ -145,7 +181,7 @@ assay_status assay_brdf_grid_create(const assay_basis *basis, assay_context *con
     maker.rule.context  = context;
     assay_status status = prepare(&maker, grid, theta_nodes, phi_nodes);
     if (status == ASSAY_OK) {
-        status = fill_grid(&maker, grid);
+        status = fill_grid(&maker, grid, parallel);
     }
     assay_sphere_rule_destroy(&maker.rule);
     assay_analysis_destroy(maker.analysis);
@@ -156,6 +192,21 @@ assay_status assay_brdf_grid_create(const assay_basis *basis, assay_context *con
     }
     *grid_out = grid;
     return ASSAY_OK;
+}
+
+assay_status assay_brdf_grid_create(const assay_basis *basis, assay_context *context,
+                                    assay_brdf_function f, void *user, int side, int theta_nodes,
+                                    int phi_nodes, assay_brdf_grid **grid_out)
+{
+    return create(basis, context, f, user, side, theta_nodes, phi_nodes, false, grid_out);
+}
+
+assay_status assay_brdf_grid_create_parallel(const assay_basis *basis, assay_context *context,
+                                             assay_brdf_function f, void *user, int side,
+                                             int theta_nodes, int phi_nodes,
+                                             assay_brdf_grid **grid_out)
+{
+    return create(basis, context, f, user, side, theta_nodes, phi_nodes, true, grid_out);
 }
 
 void assay_brdf_grid_destroy(assay_brdf_grid *grid)

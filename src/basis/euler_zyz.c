@@ -31,6 +31,33 @@ void assay_rotation_from_euler_zyz(double alpha, double beta, double gamma, doub
     rotation_out[8]      = b.cos;
 }
 
+/* 1 / (1 + z) is (1 - z) / (x^2 + y^2), which keeps its digits below the equator. */
+assay_status assay_rotation_to_pole(assay_vec3 pole, double rotation_out[9])
+{
+    const double square = pole.x * pole.x + pole.y * pole.y + pole.z * pole.z;
+    if (!(fabs(square - 1.0) <= ASSAY_BASIS_UNIT_TOLERANCE)) {
+        return ASSAY_ERR_DOMAIN;
+    }
+    const double length = sqrt(square), x = pole.x / length, y = pole.y / length;
+    const double z = pole.z / length, aside = x * x + y * y;
+    /* x^2, x y and y^2 over 1 + z */
+    double xx = 2.0, xy = 0.0, yy = 0.0;
+    if (z >= 0.0) {
+        xx = x * x / (1.0 + z);
+        xy = x * y / (1.0 + z);
+        yy = y * y / (1.0 + z);
+    } else if (aside > 0.0) {
+        xx = (1.0 - z) * (x * x / aside);
+        xy = (1.0 - z) * (x * y / aside);
+        yy = (1.0 - z) * (y * y / aside);
+    }
+    const double rotation[9] = {1.0 - xx, -xy, x, -xy, 1.0 - yy, y, -x, -y, z};
+    for (int i = 0; i < 9; i++) {
+        rotation_out[i] = rotation[i];
+    }
+    return ASSAY_OK;
+}
+
 static bool is_rotation(const double r[9])
 {
     for (int i = 0; i < 3; i++) {

@@ -22,8 +22,8 @@
 
 enum { BLOCK = 32 }; /* nodes at a time, a multiple of 4 */
 
-/* A turn smaller than this is not told from none by any double of the matrix. */
-static const double SMALLEST_TURN = 0x1p-60;
+/* No smaller turn comes here (hsh_rotation.c takes it for none); the digon's has no turn inside. */
+static const double SMALLEST_TURN = 0x1p-68;
 
 /* The functions of one parity in y, and their sums. */
 typedef struct {
@@ -167,11 +167,49 @@ static assay_status flush(const assay_basis *hsh, overlap *o)
     return status;
 }
 
-/* Nodes enough for order n; s_range: of the variable s. */
+/* Nodes enough for order n: in psi; and in a piece of s that is `length` long and reaches up to the
+ * range's end.  A piece no longer than its distance from there needs LOWER nodes only.  What goes
+ * as exp(k s) is at most exp(-k length) of its largest on the piece, and of that Gauss leaves (k
+ * length)^48 (24!)^4 / (49 (48!)^3): together below 1e-30 for any k. */
+enum { LOWER = 24 };
 static int psi_nodes_for(int order) { return 2 * (2 * order + 10); }
-static int d_nodes_for(int order, double s_range)
+static int d_nodes_for(int order, double length)
 {
-    return (int)((1.5 * order + 14.0) * (1.0 + 0.5 * s_range));
+    return (int)((1.5 * order + 14.0) * (1.0 + 0.5 * length));
+}
+
+/* Ends of the pieces of [0, range] in s, from the range's end downwards: a full one, then each as
+ * far from the end as all before it. */
+enum { MAX_PIECES = 8 };
+static int cut(double range, double *ends)
+{
+    static const double FULL  = 2.0;
+    int                 count = 0;
+    double              below = 0.0;
+    ends[0]                   = range;
+    while (range - below > FULL && count < MAX_PIECES - 2) {
+        below         = count == 0 ? FULL : 2.0 * below;
+        ends[++count] = fmax(range - below, 0.0);
+    }
+    if (ends[count] > 0.0) {
+        ends[++count] = 0.0;
+    }
+    return count;
+}
+
+static int place_d_nodes(int order, double range, double *node, double *weight)
+{
+    double    ends[MAX_PIECES + 1];
+    const int pieces = cut(range, ends);
+    int       placed = 0;
+    for (int i = 0; i < pieces; i++) {
+        const int n = i > 0 ? LOWER : d_nodes_for(order, ends[i] - ends[i + 1]);
+        if (node) {
+            assay_gauss_legendre_on(ends[i + 1], ends[i], n, node + placed, weight + placed);
+        }
+        placed += n;
+    }
+    return placed;
 }
 
 static double asinh_of(double x) { return assay_log(x + sqrt(x * x + 1.0)); }
@@ -232,10 +270,10 @@ static assay_status overlap_with(const assay_basis *hsh, overlap *o, double turn
     }
     const double scale = scale_for(turn, width);
     const double range = asinh_of(sqrt(width / scale));
-    o->d_nodes         = d_nodes_for(assay_basis_order(hsh), range);
+    const int    order = assay_basis_order(hsh);
+    o->d_nodes         = place_d_nodes(order, range, o->node[0], o->node[1]);
     memset(o->even.sum, 0, o->even.count * o->even.count * sizeof(double));
     memset(o->odd.sum, 0, o->odd.count * o->odd.count * sizeof(double));
-    assay_gauss_legendre_on(0.0, range, o->d_nodes, o->node[0], o->node[1]);
     const assay_status status = integrate(hsh, turn, scale, o);
     if (status == ASSAY_OK) {
         gather(&o->even, count, matrix_out);
@@ -249,7 +287,7 @@ static assay_status open_overlap(assay_context *context, const assay_basis *hsh,
 {
     const int          order = assay_basis_order(hsh);
     const assay_status status =
-        allocate(context, hsh, d_nodes_for(order, range), psi_nodes_for(order), o);
+        allocate(context, hsh, place_d_nodes(order, range, NULL, NULL), psi_nodes_for(order), o);
     if (status == ASSAY_OK) {
         assay_gauss_legendre(o->psi_nodes, o->psi_node[0], o->psi_node[1]);
     }

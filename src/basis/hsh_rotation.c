@@ -62,11 +62,26 @@ static void transpose(size_t count, double *matrix)
 
 /* ---- exact, and a table of it ---- */
 
+/* Whether a turn moves no entry of M_R by more than 2^-54, half the distance between 1 and the next
+ * smaller double.  M_R less the identity is the scalar product of H_i with the change of H_j,
+ * continued by 0 below the horizon: at most max |H_i| times the change's integral, and along a
+ * circle about y that is at most beta times the total variation.  On the half circle z > 0, H_j =
+ * (z / (1 + z))^(m / 2) T, T a trigonometric polynomial of degree l; its slope has the zeros of (m
+ * / 2) z' T + z (1 + z) T', of degree l + 2, so at most 2 l + 4.  So H_j has 2 l + 5 monotonic
+ * pieces of height 2 max |H_j| at most, and two steps at the ends: a variation of (4 l + 12)
+ * max |H_j|; over all circles, the integral of cos(psi) being 2, twice that.  max |H_l^m|^2 is at
+ * most the sum over m, (2 l + 1) / 2 pi. */
+static bool is_no_turn(const turner *t, double angle)
+{
+    const int n = assay_basis_order(t->hsh);
+    return (4.0 / ASSAY_PI) * (n + 2) * (2 * n - 1) * angle <= 0x1p-54;
+}
+
 static assay_status exact(const turner *t, double beta, double *matrix_out)
 {
     const double angle = fabs(beta);
     const size_t n     = t->count;
-    if (angle == 0.0) {
+    if (is_no_turn(t, angle)) {
         memset(matrix_out, 0, n * n * sizeof *matrix_out);
         for (size_t i = 0; i < n; i++) {
             matrix_out[i * n + i] = 1.0;

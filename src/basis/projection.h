@@ -13,4 +13,8 @@ assay_status assay_projection_check_channels(assay_context *context, int channel
 assay_status assay_projection_check(assay_context *context, const double *values, size_t channels,
                                     assay_vec3 direction);
 
+/* A map's channels R, G, B.  Errors: ARGUMENT (one is missing), DOMAIN (a texel is not finite). */
+assay_status assay_projection_check_map(assay_context *context, const assay_image *map,
+                                        assay_channel channels_out[3]);
+
 #endif

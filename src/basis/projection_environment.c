@@ -12,6 +12,7 @@
  *
  * Invariant: rows are added from the top, texels from the left. */
 #include "basis/basis_data.h"
+#include "basis/projection.h"
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/numerics.h"
@@ -104,24 +105,26 @@ static assay_status turn_to_world(map_sum *s)
     return status;
 }
 
-static assay_status find_channels(map_sum *s, const assay_image *map)
+assay_status assay_projection_check_map(assay_context *context, const assay_image *map,
+                                        assay_channel channels_out[3])
 {
     static const char *const names[CHANNELS] = {"R", "G", "B"};
-    const size_t             texels          = (size_t)s->width * (size_t)s->height;
+    const size_t             width           = (size_t)assay_image_width(map);
+    const size_t             texels          = width * (size_t)assay_image_height(map);
     for (int c = 0; c < CHANNELS; c++) {
-        if (!assay_image_find_channel(map, names[c], &s->channels[c]) ||
-            s->channels[c].type != ASSAY_CHANNEL_FLOAT) {
-            return assay_fail(s->context, ASSAY_ERR_ARGUMENT,
+        if (!assay_image_find_channel(map, names[c], &channels_out[c]) ||
+            channels_out[c].type != ASSAY_CHANNEL_FLOAT) {
+            return assay_fail(context, ASSAY_ERR_ARGUMENT,
                               "an environment map needs float channels R, G and B; '%s' is missing",
                               names[c]);
         }
         for (size_t i = 0; i < texels; i++) {
-            if (!isfinite(s->channels[c].data.f32[i])) {
-                return assay_fail(s->context, ASSAY_ERR_DOMAIN,
+            if (!isfinite(channels_out[c].data.f32[i])) {
+                return assay_fail(context, ASSAY_ERR_DOMAIN,
                                   "environment map: channel %s at column %zu, row %zu is %g; "
                                   "radiance must be finite",
-                                  names[c], i % (size_t)s->width, i / (size_t)s->width,
-                                  (double)s->channels[c].data.f32[i]);
+                                  names[c], i % width, i / width,
+                                  (double)channels_out[c].data.f32[i]);
             }
         }
     }
@@ -189,7 +192,7 @@ assay_status assay_basis_project_environment(const assay_basis *basis, const ass
     /* Half a row is up to order pi / (2 height) wide in the phase of the fastest function; Gauss
      * converges faster than any power from there on. */
     s.nodes             = 12 + (int)(2.0 * s.order / s.height);
-    assay_status status = find_channels(&s, map);
+    assay_status status = assay_projection_check_map(context, map, s.channels);
     if (status != ASSAY_OK) {
         return status;
     }

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "console.h"
+#include "output_check.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -94,8 +95,8 @@ static bool read_numbers(const char *text, size_t length, double *first, double 
 
 static const char *read_lobe(const char *text, basis_request *r)
 {
-    static const char usage[] = "takes phong:EXPONENT@THETA or ward:AX,AY@THETA[,PHI], as in "
-                                "phong:5@60";
+    static const char usage[] = "takes phong:EXPONENT@THETA[,PHI] or ward:AX,AY@THETA[,PHI], "
+                                "as in phong:5@60";
     const char       *at      = strchr(text, '@');
     const bool        phong   = strncmp(text, "phong:", 6) == 0;
     const char       *shape   = phong ? text + 6 : text + 5;
@@ -141,15 +142,22 @@ static const char *read_basis(const char *value, basis_request *r)
     return r->all_bases ? NULL : read_kind(value, &r->basis, &r->has_basis);
 }
 
-static const char *read_direction(const char *value, basis_request *r)
+static const char *read_direction(const char *value, assay_vec3 *direction, bool *given)
 {
     double      d[3];
     const char *problem = cli_read_triple(value, d);
     if (!problem) {
-        r->direction     = (assay_vec3){d[0], d[1], d[2]};
-        r->has_direction = true;
+        *direction = (assay_vec3){d[0], d[1], d[2]};
+        *given     = true;
     }
     return problem;
+}
+
+static const char *read_convention(const char *value, assay_convention *convention)
+{
+    return assay_convention_find(value, convention) == ASSAY_OK
+               ? NULL
+               : "takes thesis, plain or kontkanen";
 }
 
 static const char *read_azimuthal(const char *value, basis_request *r)
@@ -271,12 +279,17 @@ static const char *take(void *user, int index, const char *value)
         return read_order(value, &r->sh_order);
     }
     if (strcmp(name, "convention") == 0) {
-        return assay_convention_find(value, &r->convention) == ASSAY_OK
-                   ? NULL
-                   : "takes thesis, plain or kontkanen";
+        return read_convention(value, &r->convention);
+    }
+    if (strcmp(name, "to-convention") == 0) {
+        r->has_to_convention = true;
+        return read_convention(value, &r->to_convention);
     }
     if (strcmp(name, "dir") == 0) {
-        return read_direction(value, r);
+        return read_direction(value, &r->direction, &r->has_direction);
+    }
+    if (strcmp(name, "normal") == 0) {
+        return read_direction(value, &r->normal, &r->has_normal);
     }
     if (strcmp(name, "env") == 0) {
         r->env = value;
@@ -289,13 +302,6 @@ static const char *take(void *user, int index, const char *value)
     return take_counts(r, name, value);
 }
 
-bool cli_basis_parse(const char *command, int count, char **argv, const cli_option *table,
-                     basis_request *request)
-{
-    basis_parser parser = {table, request};
-    return cli_parse(command, count, argv, table, take, NULL, &parser);
-}
-
 bool cli_basis_need(const char *command, bool given, const char *option)
 {
     return given || cli_complain(command, "%s is missing (assay %s --help lists the options)",
@@ -306,4 +312,37 @@ assay_status cli_basis_create(assay_context *context, const basis_request *reque
                               assay_basis_kind kind, long order, assay_basis **basis_out)
 {
     return assay_basis_create(context, kind, (int)order, request->convention, basis_out);
+}
+
+int cli_basis_run(const basis_command *command, int count, char **argv, basis_request request)
+{
+    basis_parser parser = {command->options, &request};
+    cli_console  console;
+    if (!cli_parse(command->name, count, argv, command->options, take, NULL, &parser)) {
+        return CLI_EXIT_USAGE;
+    }
+    if (request.help) {
+        fputs(command->usage, stdout);
+        cli_print_options(command->options);
+        return 0;
+    }
+    if (!command->check(&request)) {
+        return CLI_EXIT_USAGE;
+    }
+    if (request.output) {
+        int code =
+            cli_check_extension(command->name, "--output", request.output, command->extension);
+        code = code ? code : cli_check_file(command->name, request.output);
+        if (code) {
+            return code;
+        }
+    }
+    assay_context *context = cli_console_open(&console, command->name, false, 1, 0);
+    if (!context) {
+        return assay_status_exit_code(ASSAY_ERR_MEMORY);
+    }
+    request.console = &console;
+    const int code  = cli_console_finish(&console, context, command->run(context, &request));
+    assay_context_destroy(context);
+    return code;
 }

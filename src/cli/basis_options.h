@@ -4,24 +4,26 @@
 #define ASSAY_CLI_BASIS_OPTIONS_H
 
 #include "assay/assay.h"
+#include "console.h"
 #include "options.h"
 
 /* What was asked for; `given` tells which options there were. */
 typedef struct {
     bool               help, json, hex, all_bases, accuracy, irradiance;
     bool               has_basis, has_from, has_to, has_direction, has_theta, has_phi, has_euler;
-    bool               has_beta, has_via, has_lobe, has_l, has_m;
+    bool               has_beta, has_via, has_lobe, has_l, has_m, has_normal, has_to_convention;
     assay_basis_kind   basis, from, to;
-    assay_convention   convention;
+    assay_convention   convention, to_convention;
     long               order, to_order, sh_order, table_steps; /* 0: not given */
     long               theta_nodes, phi_nodes, samples, theta_steps, phi_steps;
     long               l, m, size;
     unsigned long long seed;
-    assay_vec3         direction;
+    assay_vec3         direction, normal;
     double             theta_deg, phi_deg, beta_deg, rotation_deg, euler_deg[3];
     assay_hsh_rotation_way via;
     assay_lobe             lobe;
     const char            *lobe_text, *env, *output;
+    cli_console           *console; /* what the command runs on */
 } basis_request;
 
 #define BASIS_OPTION_BASIS                                                                         \
@@ -38,7 +40,10 @@ typedef struct {
     }
 #define BASIS_OPTION_LOBE                                                                          \
     {                                                                                              \
-        "lobe", 0, "L", "phong:EXPONENT@THETA or ward:AX,AY@THETA[,PHI], degrees"                  \
+        "lobe", 0, "L",                                                                            \
+            "phong:EXPONENT@THETA[,PHI] or ward:AX,AY@THETA[,PHI]: direction of the eye, "         \
+            "degrees; the "                                                                        \
+            "lobe points to the mirror direction, THETA and PHI + 180"                             \
     }
 #define BASIS_OPTIONS_PRINT                                                                        \
     {"json", 0, NULL, "print JSON, 17 significant digits"},                                        \
@@ -47,9 +52,19 @@ typedef struct {
         0                                                                                          \
     }
 
-/* Reads a command line.  False after a message. */
-bool cli_basis_parse(const char *command, int count, char **argv, const cli_option *table,
-                     basis_request *request);
+/* What is particular to one command. */
+typedef struct {
+    const char       *name;  /* "basis eval" */
+    const char       *usage; /* what --help says before the options */
+    const cli_option *options;
+    const char       *extension; /* of --output; NULL: there is no such option */
+    /* Whether the request makes sense; false after a message. */
+    bool (*check)(const basis_request *request);
+    assay_status (*run)(assay_context *context, const basis_request *request);
+} basis_command;
+
+/* Reads a command line, runs the command, and gives the exit code; request: the defaults. */
+int cli_basis_run(const basis_command *command, int count, char **argv, basis_request request);
 
 /* Complains, and answers false, where what a command needs was not given. */
 bool cli_basis_need(const char *command, bool given, const char *option);

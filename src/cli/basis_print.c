@@ -1,7 +1,11 @@
 /* basis_print.c - numbers that can be read back: 17 significant digits always suffice. */
 #include "basis_print.h"
 
+#include <math.h>
 #include <stdio.h>
+
+/* Matrices are right to this (docs/methods/basis-rotation.md): smaller entries may be zeros. */
+static const double ROUNDING = 1e-13;
 
 cJSON *cli_json_number(double value, bool hex)
 {
@@ -150,8 +154,10 @@ void cli_print_matrix(const assay_basis *rows, const assay_basis *columns, const
             const double value = matrix[r * column_count + c];
             if (hex || value == 0.0) {
                 cli_print_number(value, hex, width);
+            } else if (fabs(value) < ROUNDING) {
+                printf(" %*s", width, "0");
             } else {
-                printf(" %*.6f", width, value);
+                printf(fabs(value) < 5e-7 ? " %*.3g" : " %*.6f", width, value);
             }
         }
         printf("\n");

@@ -28,7 +28,8 @@ void cli_print_number(double value, bool hex, int width);
 void cli_print_functions(const assay_basis *basis, const char *const *names, int columns,
                          const double *values, bool hex);
 
-/* A matrix with the names of its rows and columns: "2,-1". */
+/* A matrix with the names of its rows and columns: "2,-1".  Six decimals; three digits where those
+ * would all be zeros; 0 where it is nothing but rounding. */
 void cli_print_matrix(const assay_basis *rows, const assay_basis *columns, const double *matrix,
                       bool hex);
 

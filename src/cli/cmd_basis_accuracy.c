@@ -35,8 +35,9 @@ static void print_table(const basis_request *r, const accuracy_table *table)
         printf("%5ld", n + 1);
         for (int k = 0; k < ASSAY_BASIS_KIND_COUNT; k++) {
             if (is_wanted(r, k)) {
-                printf(r->hex ? " %23a (%4zu)" : " %13.9f (%4zu)", table->values[k][n],
-                       table->counts[k][n]);
+                const double value = table->values[k][n];
+                printf(r->hex ? " %23a" : value < 5e-10 ? " %13.3g" : " %13.9f", value);
+                printf(" (%4zu)", table->counts[k][n]);
             }
         }
         printf("\n");
@@ -114,26 +115,19 @@ static assay_status measure(assay_context *context, const basis_request *r)
     return ASSAY_OK;
 }
 
+static bool makes_sense(const basis_request *r)
+{
+    return cli_basis_need(COMMAND, r->has_lobe, "--lobe");
+}
+
+static const basis_command SELF = {
+    .name    = COMMAND,
+    .usage   = "usage: assay basis accuracy --lobe phong:5@60|ward:0.2,0.5@30 [--basis NAME]\n",
+    .options = OPTIONS,
+    .check   = makes_sense,
+    .run     = measure};
+
 int cli_basis_accuracy(int count, char **argv)
 {
-    basis_request request = {.order = 10};
-    cli_console   console;
-    if (!cli_basis_parse(COMMAND, count, argv, OPTIONS, &request)) {
-        return CLI_EXIT_USAGE;
-    }
-    if (request.help) {
-        printf("usage: assay basis accuracy --lobe phong:5@60|ward:0.2,0.5@30 [--basis NAME]\n");
-        cli_print_options(OPTIONS);
-        return 0;
-    }
-    if (!cli_basis_need(COMMAND, request.has_lobe, "--lobe")) {
-        return CLI_EXIT_USAGE;
-    }
-    assay_context *context = cli_console_open(&console, COMMAND, false, 1, 0);
-    if (!context) {
-        return assay_status_exit_code(ASSAY_ERR_MEMORY);
-    }
-    const int code = cli_console_finish(&console, context, measure(context, &request));
-    assay_context_destroy(context);
-    return code;
+    return cli_basis_run(&SELF, count, argv, (basis_request){.order = 10});
 }

@@ -7,12 +7,14 @@
 #include "console.h"
 
 static const char       COMMAND[] = "basis convert";
-static const cli_option OPTIONS[] = {{"from", 0, "NAME", "sh or hsh"},
-                                     {"to", 0, "NAME", "the other one"},
-                                     {"order", 0, "N", "of what comes in: bands l < N, 1 to 33"},
-                                     {"to-order", 0, "N", "of what comes out (default: the same)"},
-                                     BASIS_OPTION_CONVENTION,
-                                     BASIS_OPTIONS_PRINT};
+static const cli_option OPTIONS[] = {
+    {"from", 0, "NAME", "sh or hsh"},
+    {"to", 0, "NAME", "the other one"},
+    {"order", 0, "N", "of what comes in: bands l < N, 1 to 33"},
+    {"to-order", 0, "N", "of what comes out (default: the same)"},
+    BASIS_OPTION_CONVENTION,
+    {"to-convention", 0, "NAME", "of what comes out (default: the same)"},
+    BASIS_OPTIONS_PRINT};
 
 static void expand(const assay_sparse *sparse, double *matrix)
 {
@@ -49,7 +51,8 @@ static assay_status convert(assay_context *context, const basis_request *r)
     const long    order  = r->to_order ? r->to_order : r->order;
     assay_status  status = cli_basis_create(context, r, r->from, r->order, &from);
     if (status == ASSAY_OK) {
-        status = cli_basis_create(context, r, r->to, order, &to);
+        status = assay_basis_create(context, r->to, (int)order,
+                                    r->has_to_convention ? r->to_convention : r->convention, &to);
     }
     if (status == ASSAY_OK) {
         status = assay_basis_conversion(context, from, to, &sparse);
@@ -63,28 +66,21 @@ static assay_status convert(assay_context *context, const basis_request *r)
     return status;
 }
 
+static bool makes_sense(const basis_request *r)
+{
+    return cli_basis_need(COMMAND, r->has_from, "--from") &&
+           cli_basis_need(COMMAND, r->has_to, "--to") &&
+           cli_basis_need(COMMAND, r->order > 0, "--order");
+}
+
+static const basis_command SELF = {.name  = COMMAND,
+                                   .usage = "usage: assay basis convert --from hsh --to sh --order "
+                                            "N [--to-order N] [--to-convention C]\n",
+                                   .options = OPTIONS,
+                                   .check   = makes_sense,
+                                   .run     = convert};
+
 int cli_basis_convert(int count, char **argv)
 {
-    basis_request request = {0};
-    cli_console   console;
-    if (!cli_basis_parse(COMMAND, count, argv, OPTIONS, &request)) {
-        return CLI_EXIT_USAGE;
-    }
-    if (request.help) {
-        printf("usage: assay basis convert --from hsh --to sh --order N [--to-order N]\n");
-        cli_print_options(OPTIONS);
-        return 0;
-    }
-    if (!cli_basis_need(COMMAND, request.has_from, "--from") ||
-        !cli_basis_need(COMMAND, request.has_to, "--to") ||
-        !cli_basis_need(COMMAND, request.order > 0, "--order")) {
-        return CLI_EXIT_USAGE;
-    }
-    assay_context *context = cli_console_open(&console, COMMAND, false, 1, 0);
-    if (!context) {
-        return assay_status_exit_code(ASSAY_ERR_MEMORY);
-    }
-    const int code = cli_console_finish(&console, context, convert(context, &request));
-    assay_context_destroy(context);
-    return code;
+    return cli_basis_run(&SELF, count, argv, (basis_request){0});
 }

@@ -1,4 +1,5 @@
 /* cmd_basis_digon.c - `assay basis digon`. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -33,28 +34,25 @@ static assay_status make(assay_context *context, const basis_request *r)
     return status;
 }
 
+static bool makes_sense(const basis_request *r)
+{
+    if (r->has_beta && !(fabs(r->beta_deg) <= 180.0)) {
+        return cli_complain(COMMAND, "--beta-deg %.10g: -180 to 180 degrees are possible",
+                            r->beta_deg);
+    }
+    return cli_basis_need(COMMAND, r->order > 0, "--order") &&
+           cli_basis_need(COMMAND, r->has_beta, "--beta-deg");
+}
+
+static const basis_command SELF = {
+    .name    = COMMAND,
+    .usage   = "usage: assay basis digon --order N --beta-deg B\n"
+               "The matrix, in HSH, that sets to zero what a turn by B moves below the horizon.\n",
+    .options = OPTIONS,
+    .check   = makes_sense,
+    .run     = make};
+
 int cli_basis_digon(int count, char **argv)
 {
-    basis_request request = {0};
-    cli_console   console;
-    if (!cli_basis_parse(COMMAND, count, argv, OPTIONS, &request)) {
-        return CLI_EXIT_USAGE;
-    }
-    if (request.help) {
-        printf("usage: assay basis digon --order N --beta-deg B\n"
-               "The matrix, in HSH, that sets to zero what a turn by B moves below the horizon.\n");
-        cli_print_options(OPTIONS);
-        return 0;
-    }
-    if (!cli_basis_need(COMMAND, request.order > 0, "--order") ||
-        !cli_basis_need(COMMAND, request.has_beta, "--beta-deg")) {
-        return CLI_EXIT_USAGE;
-    }
-    assay_context *context = cli_console_open(&console, COMMAND, false, 1, 0);
-    if (!context) {
-        return assay_status_exit_code(ASSAY_ERR_MEMORY);
-    }
-    const int code = cli_console_finish(&console, context, make(context, &request));
-    assay_context_destroy(context);
-    return code;
+    return cli_basis_run(&SELF, count, argv, (basis_request){0});
 }

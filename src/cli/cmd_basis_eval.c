@@ -29,8 +29,7 @@ static assay_status print_values(const assay_basis *basis, const double *values,
     return cli_json_print(root, ok);
 }
 
-static assay_status evaluate(cli_console *console, assay_context *context,
-                             const basis_request *request)
+static assay_status evaluate(assay_context *context, const basis_request *request)
 {
     assay_basis     *basis = NULL;
     const assay_vec3 d     = request->has_direction
@@ -46,7 +45,7 @@ static assay_status evaluate(cli_console *console, assay_context *context,
     if (status == ASSAY_OK) {
         status = print_values(basis, values, request->json, request->hex);
     } else if (status == ASSAY_ERR_DOMAIN) {
-        console->said = true;
+        request->console->said = true;
         cli_complain(COMMAND, "direction (%g, %g, %g): it must be a unit vector%s", d.x, d.y, d.z,
                      assay_basis_kind_is_hemispherical(request->basis) ? " with z >= 0" : "");
     }
@@ -55,33 +54,24 @@ static assay_status evaluate(cli_console *console, assay_context *context,
     return status;
 }
 
+static bool makes_sense(const basis_request *r)
+{
+    if (r->has_direction && (r->has_theta || r->has_phi)) {
+        return cli_complain(COMMAND, "a direction comes as --dir or as angles, not as both");
+    }
+    return cli_basis_need(COMMAND, r->has_basis, "--basis") &&
+           cli_basis_need(COMMAND, r->order > 0, "--order") &&
+           cli_basis_need(COMMAND, r->has_direction || r->has_theta, "--dir or --theta-deg");
+}
+
+static const basis_command SELF = {
+    .name    = COMMAND,
+    .usage   = "usage: assay basis eval --basis NAME --order N --dir X,Y,Z [--json|--hex]\n",
+    .options = OPTIONS,
+    .check   = makes_sense,
+    .run     = evaluate};
+
 int cli_basis_eval(int count, char **argv)
 {
-    basis_request request = {0};
-    cli_console   console;
-    if (!cli_basis_parse(COMMAND, count, argv, OPTIONS, &request)) {
-        return CLI_EXIT_USAGE;
-    }
-    if (request.help) {
-        printf("usage: assay basis eval --basis NAME --order N --dir X,Y,Z [--json|--hex]\n");
-        cli_print_options(OPTIONS);
-        return 0;
-    }
-    if (!cli_basis_need(COMMAND, request.has_basis, "--basis") ||
-        !cli_basis_need(COMMAND, request.order > 0, "--order") ||
-        !cli_basis_need(COMMAND, request.has_direction || request.has_theta,
-                        "--dir or --theta-deg")) {
-        return CLI_EXIT_USAGE;
-    }
-    if (request.has_direction && (request.has_theta || request.has_phi)) {
-        cli_complain(COMMAND, "a direction comes as --dir or as angles, not as both");
-        return CLI_EXIT_USAGE;
-    }
-    assay_context *context = cli_console_open(&console, COMMAND, false, 1, 0);
-    if (!context) {
-        return assay_status_exit_code(ASSAY_ERR_MEMORY);
-    }
-    const int code = cli_console_finish(&console, context, evaluate(&console, context, &request));
-    assay_context_destroy(context);
-    return code;
+    return cli_basis_run(&SELF, count, argv, (basis_request){0});
 }

@@ -4,7 +4,6 @@
 
 #include "basis_options.h"
 #include "console.h"
-#include "output_check.h"
 
 static const char       COMMAND[] = "basis plot";
 static const cli_option OPTIONS[] = {
@@ -44,8 +43,8 @@ static assay_status find_function(const assay_basis *basis, const basis_request 
     return ASSAY_ERR_ARGUMENT;
 }
 
-static assay_status draw_function(cli_console *console, assay_context *context,
-                                  const basis_request *r, assay_image **image_out)
+static assay_status draw_function(assay_context *context, const basis_request *r,
+                                  assay_image **image_out)
 {
     assay_basis *basis  = NULL;
     size_t       i      = 0;
@@ -53,7 +52,7 @@ static assay_status draw_function(cli_console *console, assay_context *context,
     if (status == ASSAY_OK) {
         status = find_function(basis, r, &i);
         if (status != ASSAY_OK) {
-            console->said = true;
+            r->console->said = true;
             cli_complain(COMMAND, "--l %ld --m %ld: the basis %s has no such function", r->l, r->m,
                          assay_basis_kind_name(r->basis));
         }
@@ -111,11 +110,11 @@ static assay_status draw_accuracy(assay_context *context, const basis_request *r
     return assay_plot_draw(context, &plot, width, width * 2 / 3, image_out);
 }
 
-static assay_status draw(cli_console *console, assay_context *context, const basis_request *r)
+static assay_status draw(assay_context *context, const basis_request *r)
 {
-    assay_image *image  = NULL;
-    assay_status status = r->accuracy ? draw_accuracy(context, r, &image)
-                                      : draw_function(console, context, r, &image);
+    assay_image *image = NULL;
+    assay_status status =
+        r->accuracy ? draw_accuracy(context, r, &image) : draw_function(context, r, &image);
     if (status == ASSAY_OK) {
         status = assay_image_write_png(image, "", 0.0, r->output);
     }
@@ -145,33 +144,17 @@ static bool makes_sense(const basis_request *r)
            cli_basis_need(COMMAND, r->has_l, "--l") && cli_basis_need(COMMAND, r->has_m, "--m");
 }
 
+static const basis_command SELF = {
+    .name      = COMMAND,
+    .usage     = "usage: assay basis plot --basis hsh --l L --m M -o F.png\n"
+                 "       assay basis plot --accuracy --lobe L [--max-order N] -o F.png\n"
+                 "A function is drawn as |f| in each direction, warm where f > 0, cool where < 0.\n",
+    .options   = OPTIONS,
+    .extension = ".png",
+    .check     = makes_sense,
+    .run       = draw};
+
 int cli_basis_plot(int count, char **argv)
 {
-    basis_request request = {.order = 10};
-    cli_console   console;
-    if (!cli_basis_parse(COMMAND, count, argv, OPTIONS, &request)) {
-        return CLI_EXIT_USAGE;
-    }
-    if (request.help) {
-        printf("usage: assay basis plot --basis hsh --l L --m M -o F.png\n"
-               "       assay basis plot --accuracy --lobe L [--max-order N] -o F.png\n"
-               "A function is drawn as |f| in each direction, warm where f > 0, cool where < 0.\n");
-        cli_print_options(OPTIONS);
-        return 0;
-    }
-    if (!makes_sense(&request)) {
-        return CLI_EXIT_USAGE;
-    }
-    int check = cli_check_extension(COMMAND, "--output", request.output, ".png");
-    check     = check ? check : cli_check_file(COMMAND, request.output);
-    if (check) {
-        return check;
-    }
-    assay_context *context = cli_console_open(&console, COMMAND, false, 1, 0);
-    if (!context) {
-        return assay_status_exit_code(ASSAY_ERR_MEMORY);
-    }
-    const int code = cli_console_finish(&console, context, draw(&console, context, &request));
-    assay_context_destroy(context);
-    return code;
+    return cli_basis_run(&SELF, count, argv, (basis_request){.order = 10});
 }

@@ -10,14 +10,16 @@
 
 static const char       COMMAND[] = "basis project";
 static const cli_option OPTIONS[] = {
-    {"env", 0, "F", "environment map, latitude-longitude, .exr or .hdr: SH, exactly"},
+    {"env", 0, "F", "environment map, latitude-longitude, .exr or .hdr, integrated exactly"},
+    {"normal", 0, "X,Y,Z",
+     "pole of the hemisphere for a map in a hemispherical basis (default +z)"},
     {"rotation-deg", 0, "D", "turn the map about world +y"},
     {"irradiance", 0, NULL, "times A_l of the clamped cosine: irradiance, not radiance"},
     BASIS_OPTION_LOBE,
     BASIS_OPTION_BASIS,
     BASIS_OPTION_ORDER,
     {"theta-nodes", 0, "N",
-     "of the quadrature of a lobe; without it nodes are doubled until nothing moves"},
+     "nodes of a product rule for a lobe; without it nodes follow the lobe until nothing moves"},
     {"phi-nodes", 0, "N", "around (default: twice as many)"},
     {"samples", 0, "N", "Monte Carlo instead, with variances"},
     {"seed", 0, "S", "of its random numbers (default 0)"},
@@ -26,14 +28,32 @@ static const cli_option OPTIONS[] = {
 
 enum { CHANNELS = 3 };
 
+static assay_status project_hemisphere(assay_context *context, const assay_basis *basis,
+                                       const basis_request *r, const assay_image *map, double turn,
+                                       double *coefficients)
+{
+    double       frame[9];
+    assay_status status = assay_rotation_to_pole(r->normal, frame);
+    if (status != ASSAY_OK) {
+        r->console->said = true;
+        cli_complain(COMMAND, "--normal %g,%g,%g: it must be a unit vector", r->normal.x,
+                     r->normal.y, r->normal.z);
+        return status;
+    }
+    return assay_basis_project_environment_hemisphere(basis, context, map, turn, frame,
+                                                      coefficients);
+}
+
 static assay_status project_map(assay_context *context, const assay_basis *basis,
                                 const basis_request *r, double *coefficients)
 {
     assay_image *map    = NULL;
     assay_status status = assay_image_read(context, r->env, &map);
     if (status == ASSAY_OK) {
-        status =
-            assay_basis_project_environment(basis, map, cli_radians(r->rotation_deg), coefficients);
+        const double turn = cli_radians(r->rotation_deg);
+        status            = assay_basis_kind_is_hemispherical(r->basis)
+                                ? project_hemisphere(context, basis, r, map, turn, coefficients)
+                                : assay_basis_project_environment(basis, map, turn, coefficients);
     }
     assay_image_destroy(map);
     if (status == ASSAY_OK && r->irradiance) {
@@ -54,11 +74,14 @@ static assay_status report_map(assay_context *context, const assay_basis *basis,
         cli_print_functions(basis, names, CHANNELS, coefficients, r->hex);
         return ASSAY_OK;
     }
-    cJSON     *root     = cli_json_basis(basis);
-    cJSON     *channels = cJSON_CreateStringArray(names, CHANNELS);
-    const bool added    = root && channels && cJSON_AddItemToObject(root, "channels", channels);
-    const bool ok       = added && cli_json_add_rows(root, "values", coefficients, CHANNELS,
-                                                     assay_basis_count(basis), r->hex);
+    const double normal[3] = {r->normal.x, r->normal.y, r->normal.z};
+    cJSON       *root      = cli_json_basis(basis);
+    cJSON       *channels  = cJSON_CreateStringArray(names, CHANNELS);
+    const bool   added     = root && channels && cJSON_AddItemToObject(root, "channels", channels);
+    const bool   dome      = assay_basis_kind_is_hemispherical(r->basis);
+    const bool   ok =
+        added && (!dome || cli_json_add_list(root, "normal", normal, 3, r->hex)) &&
+        cli_json_add_rows(root, "values", coefficients, CHANNELS, assay_basis_count(basis), r->hex);
     if (!added) {
         cJSON_Delete(channels);
     }
@@ -72,58 +95,8 @@ static void lobe_value(void *user, assay_vec3 direction, double *values_out)
     }
 }
 
-/* ---- a lobe ---- */
-
-enum { FIRST_NODES = 64, MOST_NODES = 2048 };
-
-static const double SETTLED = 1e-11; /* of the largest coefficient */
-
-static assay_status integrate(assay_context *context, const assay_basis *basis, assay_lobe *lobe,
-                              int nodes, double *coefficients)
-{
-    return assay_basis_project(basis, context, lobe_value, lobe, 1, nodes, 2 * nodes, coefficients);
-}
-
-/* How far two rows are from each other, in units of the largest coefficient. */
-static double movement(size_t count, const double *a, const double *b)
-{
-    double moved = 0.0, largest = 0.0;
-    for (size_t i = 0; i < count; i++) {
-        moved   = fmax(moved, fabs(a[i] - b[i]));
-        largest = fmax(largest, fabs(b[i]));
-    }
-    return largest > 0.0 ? moved / largest : 0.0;
-}
-
-/* Doubles the nodes until no coefficient moves; refuses what does not settle.  spare: a row. */
-static assay_status integrate_until_settled(cli_console *console, assay_context *context,
-                                            const assay_basis *basis, assay_lobe *lobe,
-                                            const char *lobe_text, double *coefficients,
-                                            double *spare)
-{
-    const size_t count  = assay_basis_count(basis);
-    double       moved  = INFINITY;
-    assay_status status = integrate(context, basis, lobe, FIRST_NODES, spare);
-    for (int n = 2 * FIRST_NODES; n <= MOST_NODES && status == ASSAY_OK && !(moved <= SETTLED);
-         n *= 2) {
-        status = integrate(context, basis, lobe, n, coefficients);
-        moved  = movement(count, spare, coefficients);
-        memcpy(spare, coefficients, count * sizeof *spare);
-    }
-    if (status == ASSAY_OK && !(moved <= SETTLED)) {
-        cli_complain(COMMAND,
-                     "--lobe %s: with %d nodes coefficients still move by %.2g of the largest; "
-                     "--theta-nodes takes a number without that check, --samples takes random ones",
-                     lobe_text, MOST_NODES, moved);
-        console->said = true;
-        return ASSAY_ERR_DOMAIN;
-    }
-    return status;
-}
-
-static assay_status project_lobe(cli_console *console, assay_context *context,
-                                 const assay_basis *basis, const basis_request *r,
-                                 double *coefficients)
+static assay_status project_lobe(assay_context *context, const assay_basis *basis,
+                                 const basis_request *r, double *coefficients)
 {
     const size_t count = assay_basis_count(basis);
     assay_lobe   lobe  = r->lobe;
@@ -138,19 +111,25 @@ static assay_status project_lobe(cli_console *console, assay_context *context,
         return assay_basis_project(basis, context, lobe_value, &lobe, 1, (int)theta, (int)phi,
                                    coefficients);
     }
-    return integrate_until_settled(console, context, basis, &lobe, r->lobe_text, coefficients,
-                                   coefficients + count);
+    const assay_status status = assay_basis_project_lobe(basis, context, &lobe, coefficients);
+    if (status == ASSAY_ERR_DOMAIN) {
+        r->console->said = true;
+        cli_complain(COMMAND,
+                     "--lobe %s: %s (--theta-nodes takes a product rule without that check, "
+                     "--samples takes random directions)",
+                     r->lobe_text, assay_context_error(context));
+    }
+    return status;
 }
 
 /* coefficients: one row; behind it, where there are samples, one of variances. */
-static assay_status report_lobe(cli_console *console, assay_context *context,
-                                const assay_basis *basis, const basis_request *r,
-                                double *coefficients)
+static assay_status report_lobe(assay_context *context, const assay_basis *basis,
+                                const basis_request *r, double *coefficients)
 {
     static const char *const names[2] = {"value", "variance"};
     const size_t             count    = assay_basis_count(basis);
     const bool               random   = r->samples > 0;
-    const assay_status       status   = project_lobe(console, context, basis, r, coefficients);
+    const assay_status       status   = project_lobe(context, basis, r, coefficients);
     if (status != ASSAY_OK) {
         return status;
     }
@@ -166,7 +145,7 @@ static assay_status report_lobe(cli_console *console, assay_context *context,
     return cli_json_print(root, ok);
 }
 
-static assay_status report(cli_console *console, assay_context *context, const basis_request *r)
+static assay_status report(assay_context *context, const basis_request *r)
 {
     assay_basis *basis  = NULL;
     assay_status status = cli_basis_create(context, r, r->basis, r->order, &basis);
@@ -179,7 +158,7 @@ static assay_status report(cli_console *console, assay_context *context, const b
     } else if (r->env) {
         status = report_map(context, basis, r, coefficients);
     } else {
-        status = report_lobe(console, context, basis, r, coefficients);
+        status = report_lobe(context, basis, r, coefficients);
     }
     free(coefficients);
     assay_basis_destroy(basis);
@@ -194,9 +173,12 @@ static bool makes_sense(const basis_request *r)
     if (r->env && r->has_lobe) {
         return cli_complain(COMMAND, "--env and --lobe: one thing at a time");
     }
-    if (r->env && r->basis != ASSAY_BASIS_SH) {
-        return cli_complain(COMMAND, "an environment map is projected to --basis sh; convert and "
-                                     "rotate take it from there");
+    const bool dome = r->env && assay_basis_kind_is_hemispherical(r->basis);
+    if (r->has_normal && !dome) {
+        return cli_complain(COMMAND, "--normal is of --env in a hemispherical basis");
+    }
+    if (r->irradiance && dome) {
+        return cli_complain(COMMAND, "--irradiance is of --basis sh: A_l are factors of SH");
     }
     if (r->env && (r->samples || r->theta_nodes || r->phi_nodes)) {
         return cli_complain(COMMAND,
@@ -213,27 +195,16 @@ static bool makes_sense(const basis_request *r)
            cli_basis_need(COMMAND, r->order > 0, "--order");
 }
 
+static const basis_command SELF = {
+    .name    = COMMAND,
+    .usage   = "usage: assay basis project --env F --order N [--basis NAME [--normal X,Y,Z]]\n"
+               "       assay basis project --lobe L --basis NAME --order N\n",
+    .options = OPTIONS,
+    .check   = makes_sense,
+    .run     = report};
+
 int cli_basis_project(int count, char **argv)
 {
-    basis_request request = {.basis = ASSAY_BASIS_SH};
-    cli_console   console;
-    if (!cli_basis_parse(COMMAND, count, argv, OPTIONS, &request)) {
-        return CLI_EXIT_USAGE;
-    }
-    if (request.help) {
-        printf("usage: assay basis project --env F --order N\n"
-               "       assay basis project --lobe L --basis NAME --order N\n");
-        cli_print_options(OPTIONS);
-        return 0;
-    }
-    if (!makes_sense(&request)) {
-        return CLI_EXIT_USAGE;
-    }
-    assay_context *context = cli_console_open(&console, COMMAND, false, 1, 0);
-    if (!context) {
-        return assay_status_exit_code(ASSAY_ERR_MEMORY);
-    }
-    const int code = cli_console_finish(&console, context, report(&console, context, &request));
-    assay_context_destroy(context);
-    return code;
+    return cli_basis_run(&SELF, count, argv,
+                         (basis_request){.basis = ASSAY_BASIS_SH, .normal = {0.0, 0.0, 1.0}});
 }

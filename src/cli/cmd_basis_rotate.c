@@ -13,7 +13,7 @@ static const cli_option OPTIONS[] = {
     BASIS_OPTION_ORDER,
     {"euler-zyz-deg", 0, "A,B,G", "R = Rz(A) Ry(B) Rz(G), active, right-handed"},
     {"beta-deg", 0, "B", "or about y alone: B > 0 moves the pole towards +x"},
-    {"via", 0, "WAY", "hsh: exact (default), table, conversion, digon, analytical"},
+    {"via", 0, "WAY", "hsh: exact (default); approximate: table, conversion, digon, analytical"},
     {"sh-order", 0, "N", "conversion: order of the SH between (default: the same)"},
     {"table-steps", 0, "N", "table: intervals over 90 degrees (default 16)"},
     BASIS_OPTION_CONVENTION,
@@ -101,27 +101,15 @@ static bool makes_sense(const basis_request *r)
     return true;
 }
 
+static const basis_command SELF = {
+    .name    = COMMAND,
+    .usage   = "usage: assay basis rotate --basis sh --order N --euler-zyz-deg A,B,G\n"
+               "       assay basis rotate --basis hsh --via WAY --order N --beta-deg B\n",
+    .options = OPTIONS,
+    .check   = makes_sense,
+    .run     = rotate};
+
 int cli_basis_rotate(int count, char **argv)
 {
-    basis_request request = {.via = ASSAY_HSH_EXACT};
-    cli_console   console;
-    if (!cli_basis_parse(COMMAND, count, argv, OPTIONS, &request)) {
-        return CLI_EXIT_USAGE;
-    }
-    if (request.help) {
-        printf("usage: assay basis rotate --basis sh --order N --euler-zyz-deg A,B,G\n"
-               "       assay basis rotate --basis hsh --via WAY --order N --beta-deg B\n");
-        cli_print_options(OPTIONS);
-        return 0;
-    }
-    if (!makes_sense(&request)) {
-        return CLI_EXIT_USAGE;
-    }
-    assay_context *context = cli_console_open(&console, COMMAND, false, 1, 0);
-    if (!context) {
-        return assay_status_exit_code(ASSAY_ERR_MEMORY);
-    }
-    const int code = cli_console_finish(&console, context, rotate(context, &request));
-    assay_context_destroy(context);
-    return code;
+    return cli_basis_run(&SELF, count, argv, (basis_request){.via = ASSAY_HSH_EXACT});
 }

@@ -5,7 +5,6 @@
 #include "basis_options.h"
 #include "basis_print.h"
 #include "console.h"
-#include "output_check.h"
 
 static const char       COMMAND[] = "basis table";
 static const cli_option OPTIONS[] = {
@@ -95,37 +94,24 @@ static assay_status make(assay_context *context, const basis_request *r)
     return status;
 }
 
+static bool makes_sense(const basis_request *r)
+{
+    if (r->output && (r->json || r->hex)) {
+        return cli_complain(COMMAND, "--json and --hex are of what is printed, not of --output");
+    }
+    return cli_basis_need(COMMAND, r->has_basis, "--basis") &&
+           cli_basis_need(COMMAND, r->order > 0, "--order");
+}
+
+static const basis_command SELF = {
+    .name      = COMMAND,
+    .usage     = "usage: assay basis table --basis NAME --order N [--json|--hex|-o F.npy]\n",
+    .options   = OPTIONS,
+    .extension = ".npy",
+    .check     = makes_sense,
+    .run       = make};
+
 int cli_basis_table(int count, char **argv)
 {
-    basis_request request = {.theta_steps = 6, .phi_steps = 8};
-    cli_console   console;
-    if (!cli_basis_parse(COMMAND, count, argv, OPTIONS, &request)) {
-        return CLI_EXIT_USAGE;
-    }
-    if (request.help) {
-        printf("usage: assay basis table --basis NAME --order N [--json|--hex|-o F.npy]\n");
-        cli_print_options(OPTIONS);
-        return 0;
-    }
-    if (!cli_basis_need(COMMAND, request.has_basis, "--basis") ||
-        !cli_basis_need(COMMAND, request.order > 0, "--order")) {
-        return CLI_EXIT_USAGE;
-    }
-    if (request.output && (request.json || request.hex)) {
-        cli_complain(COMMAND, "--json and --hex are of what is printed, not of --output");
-        return CLI_EXIT_USAGE;
-    }
-    int check =
-        request.output ? cli_check_extension(COMMAND, "--output", request.output, ".npy") : 0;
-    check = check || !request.output ? check : cli_check_file(COMMAND, request.output);
-    if (check) {
-        return check;
-    }
-    assay_context *context = cli_console_open(&console, COMMAND, false, 1, 0);
-    if (!context) {
-        return assay_status_exit_code(ASSAY_ERR_MEMORY);
-    }
-    const int code = cli_console_finish(&console, context, make(context, &request));
-    assay_context_destroy(context);
-    return code;
+    return cli_basis_run(&SELF, count, argv, (basis_request){.theta_steps = 6, .phi_steps = 8});
 }

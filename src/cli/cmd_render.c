@@ -96,6 +96,7 @@ static assay_status write_stats(render_job *job, const char *path)
         cJSON_AddStringToObject(root, "method", job->request->method) && add_params(root, job) &&
         cJSON_AddStringToObject(root, "scene_digest", assay_scene_digest(job->scene)) &&
         add_rays(root, s) && cJSON_AddNumberToObject(root, "samples", (double)s->samples) &&
+        cJSON_AddNumberToObject(root, "records", (double)s->records) &&
         cJSON_AddNumberToObject(root, "spp_min", (double)s->spp_min) &&
         cJSON_AddNumberToObject(root, "spp_max", (double)s->spp_max) && add_error(root, s) &&
         add_seconds(root, job) && add_memory(root, s) &&
@@ -165,6 +166,9 @@ static void say_done(const render_job *job, const char *output)
     cli_console_clear(job->console);
     fprintf(stderr, "%s: %.3g million rays in %.2f s on %d threads", output, rays * 1e-6,
             s->seconds_render, s->threads);
+    if (s->records) {
+        fprintf(stderr, ", %llu records", (unsigned long long)s->records);
+    }
     if (s->samples && s->relative_error == s->relative_error) {
         fprintf(stderr, ", mean relative error %.2g", s->relative_error);
     }

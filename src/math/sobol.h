@@ -33,22 +33,24 @@ static inline uint32_t sobol_scramble(uint32_t x, uint32_t seed)
     return sobol_reverse(x);
 }
 
-static inline uint32_t sobol_second(uint32_t index)
+/* The second coordinate of the point whose first is x: Pascal's triangle modulo 2, which is the
+ * sequence's matrix, in five steps. */
+static inline uint32_t sobol_second(uint32_t x)
 {
-    uint32_t sum = 0;
-    for (uint32_t v = UINT32_C(1) << 31; index; index >>= 1, v ^= v >> 1) {
-        sum ^= index & 1 ? v : 0;
-    }
-    return sum;
+    x ^= x << 1 & 0xaaaaaaaau;
+    x ^= x << 2 & 0xccccccccu;
+    x ^= x << 4 & 0xf0f0f0f0u;
+    x ^= x << 8 & 0xff00ff00u;
+    return x ^ x << 16;
 }
 
 /* Point number `index` of the sequence of two seeds, both coordinates in [0, 1). */
 static inline assay_point2 sobol_point(uint32_t index, uint64_t values, uint32_t order)
 {
-    const uint32_t at = sobol_scramble(index, order);
+    const uint32_t first = sobol_reverse(sobol_scramble(index, order));
     return (assay_point2){
-        0x1p-32 * sobol_scramble(sobol_reverse(at), (uint32_t)(values >> 32)),
-        0x1p-32 * sobol_scramble(sobol_second(at), (uint32_t)values),
+        0x1p-32 * sobol_scramble(first, (uint32_t)(values >> 32)),
+        0x1p-32 * sobol_scramble(sobol_second(first), (uint32_t)values),
     };
 }
 

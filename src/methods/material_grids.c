@@ -46,6 +46,7 @@ static double slope_of(const lobe_source *source, assay_vec3 wo, assay_vec3 wi)
     return value_of(source, &source->white, wo, wi).g - value_of(source, &source->black, wo, wi).g;
 }
 
+/* Only reads its source, as threads share it. */
 static double evaluate(void *user, assay_vec3 wo, assay_vec3 wi)
 {
     const lobe_source *source = user;
@@ -100,12 +101,29 @@ static lobe_source source_of(const assay_material               *material,
 
 /* ---- grids ---- */
 
+/* Steps of a grid that are still waited for: some minutes of one processor. */
+static const double MOST_STEPS = 1e12;
+
+/* A texel takes a BRDF's value, some 300 multiplications, and n^2 of them, at each node. */
+assay_status assay_material_grids_check_work(assay_context *context, int side, int nodes, int order)
+{
+    const double steps =
+        (double)side * side * 2.0 * nodes * nodes * (300.0 + (double)order * order);
+    return steps <= MOST_STEPS
+               ? ASSAY_OK
+               : assay_fail(context, ASSAY_ERR_ARGUMENT,
+                            "parameters 'grid' %d, 'nodes' %d and 'order' %d ask for %.1g steps a "
+                            "BRDF, hours of work: grid^2 * 2 nodes^2 * (300 + order^2) may be %.0g",
+                            side, nodes, order, steps, MOST_STEPS);
+}
+
 static assay_status make_grid(assay_context *context, const assay_material_grid_settings *settings,
                               lobe_source *source, int channel, assay_brdf_grid **grid_out)
 {
     source->channel = channel;
-    return assay_brdf_grid_create(settings->basis, context, evaluate, source, settings->side,
-                                  settings->nodes, 2 * settings->nodes, grid_out);
+    return assay_brdf_grid_create_parallel(settings->basis, context, evaluate, source,
+                                           settings->side, settings->nodes, 2 * settings->nodes,
+                                           grid_out);
 }
 
 assay_status assay_material_grids_create(assay_context                      *context,

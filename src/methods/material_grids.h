@@ -24,6 +24,11 @@ typedef struct {
     assay_brdf_grid *slope;                          /* base colour 1 less base colour 0      */
 } assay_material_grids;
 
+/* Whether a grid can be waited for: ARGUMENT, in terms of the parameters 'grid', 'nodes' and
+ * 'order', where it takes hours. */
+assay_status assay_material_grids_check_work(assay_context *context, int side, int nodes,
+                                             int order);
+
 /* NULL, or why the material has no grid (its lobe changes from point to point, it passes light or
  * is a perfect mirror), in words that follow its name: "transmits light". */
 const char *assay_material_grids_problem(const assay_material *material);

@@ -52,6 +52,7 @@ void assay_run_fill_stats(const assay_film *film, const assay_frame *frame,
     stats->camera_rays    = counts->camera;
     stats->scatter_rays   = counts->scatter;
     stats->shadow_rays    = counts->shadow;
+    stats->records        = counts->records;
     stats->peak_memory    = assay_process_peak_memory();
     stats->bvh_bytes      = assay_bvh_bytes(frame->world->bvh);
     stats->geometry_bytes = assay_scene_geometry_bytes(frame->world->scene);

@@ -116,6 +116,17 @@ static assay_status create_level(const assay_world                     *world,
     return ASSAY_OK;
 }
 
+/* A level's light is seen through those above, each of which averages over many of its records and
+ * dims it: half the rays will do, as in [ward88]. */
+static void halve(assay_hemisphere_layout *layout)
+{
+    static const int least = 4;
+    const int        theta = (int)(layout->theta * 0.70710678118654752440);
+    const int        phi   = (int)(layout->phi * 0.70710678118654752440);
+    layout->theta = theta < least ? (layout->theta < least ? layout->theta : least) : theta;
+    layout->phi   = phi < least ? (layout->phi < least ? layout->phi : least) : phi;
+}
+
 /* A level sees one bounce less than the one above, and ends where direct light is all that is left
  * to ask. */
 assay_status assay_irradiance_cache_create(const assay_world                     *world,
@@ -134,6 +145,7 @@ assay_status assay_irradiance_cache_create(const assay_world                    
         }
         place = &(*place)->next;
         at.path.bounces -= at.path.bounces != ASSAY_BOUNCES_INF;
+        halve(&at.layout);
     }
     *cache_out = first;
     return ASSAY_OK;
@@ -500,10 +512,10 @@ uint64_t assay_irradiance_cache_unserved(const assay_irradiance_cache *cache)
     return sum;
 }
 
-void assay_irradiance_cache_count_rays(const assay_irradiance_cache *cache,
-                                       assay_ray_counts             *counts)
+void assay_irradiance_cache_count(const assay_irradiance_cache *cache, assay_ray_counts *counts)
 {
     for (; cache; cache = cache->borrows_next ? NULL : cache->next) {
+        counts->records += assay_record_store_count(cache->store);
         for (int i = 0; i < assay_context_threads(cache->context); i++) {
             assay_ray_counts_add(counts, &cache->worker_counts[i]);
         }

@@ -23,9 +23,10 @@ void         assay_world_destroy(assay_world *world);
 /* Says that light came out that is no finite number; returns ASSAY_ERR_DOMAIN. */
 assay_status assay_world_fail_light(const assay_world *world);
 
-/* Rays traced, by kind; each worker counts its own. */
+/* Rays traced, by kind, and what caches made of them; each worker counts its own. */
 typedef struct {
     uint64_t camera, scatter, shadow;
+    uint64_t records;
 } assay_ray_counts;
 
 static inline void assay_ray_counts_add(assay_ray_counts *sum, const assay_ray_counts *counts)
@@ -33,6 +34,7 @@ static inline void assay_ray_counts_add(assay_ray_counts *sum, const assay_ray_c
     sum->camera += counts->camera;
     sum->scatter += counts->scatter;
     sum->shadow += counts->shadow;
+    sum->records += counts->records;
 }
 
 /* Where a ray that leaves a surface starts: off the geometric normal's plane, on the side that the

@@ -7,27 +7,13 @@
 #include <cmocka.h>
 
 #include <math.h>
+#include <string.h>
 
 #include "assay/basis.h"
-#include "support/failing_context.h"
+#include "support/basis_fixture.h"
 #include "support/near.h"
 
 enum { ORDER = 3, COUNT = ORDER * ORDER, SIDE = 8 };
-
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
 
 static assay_basis *make_hsh(assay_context *context)
 {
@@ -155,6 +141,32 @@ static double not_finite(void *user, assay_vec3 wo, assay_vec3 wi)
     return wo.z > 0.0 ? 1.0 : INFINITY;
 }
 
+/* Threads change nothing, and a bad value is named as it is without them. */
+static void threads_change_nothing(void **state)
+{
+    const assay_context_options options = {.threads = 3};
+    assay_context              *context = NULL;
+    assay_brdf_grid            *one = NULL, *many = NULL, *none = NULL;
+    assay_basis                *basis = make_hsh(*state);
+    assert_int_equal(assay_context_create(&options, &context), ASSAY_OK);
+    assert_int_equal(assay_brdf_grid_create(basis, context, phong_lobe, NULL, 9, 8, 8, &one),
+                     ASSAY_OK);
+    assert_int_equal(
+        assay_brdf_grid_create_parallel(basis, context, phong_lobe, NULL, 9, 8, 8, &many),
+        ASSAY_OK);
+    assert_memory_equal(assay_brdf_grid_texel(one, 0, 0), assay_brdf_grid_texel(many, 0, 0),
+                        81 * COUNT * sizeof(double));
+    assert_int_equal(
+        assay_brdf_grid_create_parallel(basis, context, not_finite, NULL, 9, 4, 4, &none),
+        ASSAY_ERR_DOMAIN);
+    assert_non_null(strstr(assay_context_error(context), "must be finite"));
+    assert_null(none);
+    assay_brdf_grid_destroy(one);
+    assay_brdf_grid_destroy(many);
+    assay_basis_destroy(basis);
+    assay_context_destroy(context);
+}
+
 static void bad_input(void **state)
 {
     assay_basis     *basis    = make_hsh(*state);
@@ -185,10 +197,13 @@ static void bad_input(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(bilinear_functions_come_back, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(texels_are_projections, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(lookup_approaches_the_projection, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(bad_input, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bilinear_functions_come_back, basis_set_up,
+                                        basis_tear_down),
+        cmocka_unit_test_setup_teardown(texels_are_projections, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(lookup_approaches_the_projection, basis_set_up,
+                                        basis_tear_down),
+        cmocka_unit_test_setup_teardown(threads_change_nothing, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(bad_input, basis_set_up, basis_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,35 +14,31 @@
 
 #include "assay/basis.h"
 #include "assay/context.h"
+#include "support/basis_fixture.h"
 #include "support/reference_table.h"
 
 #define TOLERANCE 1e-13
 
-static int set_up(void **state)
-{
-    assay_context *context = NULL;
-    assert_int_equal(assay_context_create(NULL, &context), ASSAY_OK);
-    *state = context;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assay_context_destroy(*state);
-    return 0;
-}
-
 /* Columns of the tables. */
-static const assay_basis_kind kinds[] = {ASSAY_BASIS_SH, ASSAY_BASIS_HSH, ASSAY_BASIS_ESH,
-                                         ASSAY_BASIS_ZERNIKE, ASSAY_BASIS_MAKHOTKIN_SQRT};
+static const struct {
+    assay_basis_kind kind;
+    int              column;
+} bases[] = {{ASSAY_BASIS_SH, 0},
+             {ASSAY_BASIS_HSH, 1},
+             {ASSAY_BASIS_ESH, 2},
+             {ASSAY_BASIS_ZERNIKE, 3},
+             {ASSAY_BASIS_MAKHOTKIN_SQRT, 4},
+             {ASSAY_BASIS_LSOSH, 6},
+             {ASSAY_BASIS_MAKHOTKIN, 7}};
 
 static void judge(assay_context *context, const char *name, assay_lobe lobe)
 {
     reference_table *table = reference_table_read(name);
-    for (int k = 0; k < 5; k++) {
-        assay_basis *basis = NULL;
-        double       accuracy[10], worst = 0.0;
-        assert_int_equal(assay_basis_create(context, kinds[k], 10, ASSAY_CONVENTION_THESIS, &basis),
+    for (size_t k = 0; k < sizeof bases / sizeof bases[0]; k++) {
+        const assay_basis_kind kind  = bases[k].kind;
+        assay_basis           *basis = NULL;
+        double                 accuracy[10], worst = 0.0;
+        assert_int_equal(assay_basis_create(context, kind, 10, ASSAY_CONVENTION_THESIS, &basis),
                          ASSAY_OK);
         for (size_t row = 0; row < table->rows; row++) {
             const double *key   = reference_table_keys(table, row);
@@ -52,10 +48,10 @@ static void judge(assay_context *context, const char *name, assay_lobe lobe)
                 assert_int_equal(assay_basis_accuracy(basis, context, &lobe, accuracy, NULL),
                                  ASSAY_OK);
             }
-            worst = fmax(worst, fabs(accuracy[order - 1] - reference_table_values(table, row)[k]));
+            worst = fmax(worst, fabs(accuracy[order - 1] -
+                                     reference_table_values(table, row)[bases[k].column]));
         }
-        printf("#| %-15s %-15s worst difference %.2g\n", name, assay_basis_kind_name(kinds[k]),
-               worst);
+        printf("#| %-15s %-15s worst difference %.2g\n", name, assay_basis_kind_name(kind), worst);
         assert_true(worst <= TOLERANCE);
         assay_basis_destroy(basis);
     }
@@ -79,5 +75,5 @@ int main(void)
         cmocka_unit_test(phong_is_right),
         cmocka_unit_test(ward_is_right),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, basis_set_up, basis_tear_down);
 }

@@ -16,31 +16,10 @@
 #include "assay/basis.h"
 #include "assay/context.h"
 #include "math/quadrature.h"
+#include "support/basis_fixture.h"
 #include "support/reference_table.h"
 
 #define TOLERANCE 1e-13
-
-static int set_up(void **state)
-{
-    assay_context *context = NULL;
-    assert_int_equal(assay_context_create(NULL, &context), ASSAY_OK);
-    *state = context;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assay_context_destroy(*state);
-    return 0;
-}
-
-static assay_basis *make_basis(assay_context *context, assay_basis_kind kind, int order)
-{
-    assay_basis *basis = NULL;
-    assert_int_equal(assay_basis_create(context, kind, order, ASSAY_CONVENTION_THESIS, &basis),
-                     ASSAY_OK);
-    return basis;
-}
 
 static void report(const char *what, double worst)
 {
@@ -64,8 +43,8 @@ static double judge_conversion(assay_context *context, const char *name, int hsh
                                int sh_order, bool to_sh, bool swapped)
 {
     reference_table *table = reference_table_read(name);
-    assay_basis     *hsh   = make_basis(context, ASSAY_BASIS_HSH, hsh_order);
-    assay_basis     *sh    = make_basis(context, ASSAY_BASIS_SH, sh_order);
+    assay_basis     *hsh   = basis_make(context, ASSAY_BASIS_HSH, hsh_order);
+    assay_basis     *sh    = basis_make(context, ASSAY_BASIS_SH, sh_order);
     assay_sparse    *c     = NULL;
     double           worst = 0.0;
     assert_int_equal(assay_basis_conversion(context, to_sh ? hsh : sh, to_sh ? sh : hsh, &c),
@@ -117,7 +96,7 @@ static assay_status wrong_rotation(const assay_basis *hsh, assay_context *contex
 static double judge_angles(assay_context *context, const char *name, int order, matrix_of make)
 {
     reference_table *table  = reference_table_read(name);
-    assay_basis     *hsh    = make_basis(context, ASSAY_BASIS_HSH, order);
+    assay_basis     *hsh    = basis_make(context, ASSAY_BASIS_HSH, order);
     const size_t     n      = (size_t)(order * order);
     double          *matrix = malloc(n * n * sizeof *matrix), worst = 0.0;
     assert_non_null(matrix);
@@ -162,7 +141,7 @@ static double judge_band(assay_context *context, int l, bool transposed)
     char name[32];
     snprintf(name, sizeof name, "sh_rotation_%02d", l);
     reference_table *table = reference_table_read(name);
-    assay_basis     *sh    = make_basis(context, ASSAY_BASIS_SH, l + 1);
+    assay_basis     *sh    = basis_make(context, ASSAY_BASIS_SH, l + 1);
     const size_t     n = assay_basis_count(sh), first = (size_t)(l * l);
     double          *matrix = malloc(n * n * sizeof *matrix), worst = 0.0;
     assert_non_null(matrix);
@@ -228,5 +207,5 @@ int main(void)
         cmocka_unit_test(hsh_rotation_is_right),   cmocka_unit_test(sh_rotation_is_right),
         cmocka_unit_test(gauss_legendre_is_right),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, basis_set_up, basis_tear_down);
 }

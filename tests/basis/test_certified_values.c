@@ -18,23 +18,10 @@
 
 #include "assay/basis.h"
 #include "assay/context.h"
+#include "support/basis_fixture.h"
 #include "support/reference_table.h"
 
 #define PI 3.14159265358979323846
-
-static int set_up(void **state)
-{
-    assay_context *context = NULL;
-    assert_int_equal(assay_context_create(NULL, &context), ASSAY_OK);
-    *state = context;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assay_context_destroy(*state);
-    return 0;
-}
 
 static double last_place(double scale)
 {
@@ -62,14 +49,6 @@ static void report(const char *what, const worst *w)
            w->l, w->m, w->row);
 }
 
-static assay_basis *make_basis(assay_context *context, assay_basis_kind kind, int order)
-{
-    assay_basis *basis = NULL;
-    assert_int_equal(assay_basis_create(context, kind, order, ASSAY_CONVENTION_THESIS, &basis),
-                     ASSAY_OK);
-    return basis;
-}
-
 static assay_vec3 direction_of(const double *keys)
 {
     return (assay_vec3){keys[0], keys[1], keys[2]};
@@ -80,7 +59,7 @@ static void judge_harmonics(assay_context *context, assay_basis_kind kind, const
                             worst *low, worst *high)
 {
     reference_table *table = reference_table_read(name);
-    assay_basis     *basis = make_basis(context, kind, 33);
+    assay_basis     *basis = basis_make(context, kind, 33);
     double           values[33 * 33];
     assert_int_equal(table->columns - table->keys, assay_basis_count(basis));
     for (size_t row = 0; row < table->rows; row++) {
@@ -125,7 +104,7 @@ static void hsh_is_right(void **state)
 static void judge_rows(assay_context *context, assay_basis_kind kind, const char *name, worst *w)
 {
     reference_table *table = reference_table_read(name);
-    assay_basis     *basis = make_basis(context, kind, 17);
+    assay_basis     *basis = basis_make(context, kind, 17);
     double           values[17 * 17];
     assert_int_equal(table->columns - table->keys, assay_basis_count(basis));
     for (size_t row = 0; row < table->rows; row++) {
@@ -172,7 +151,7 @@ static void judge_gradients(assay_context *context, assay_basis_kind kind, const
                             worst *w)
 {
     reference_table *table = reference_table_read(name);
-    assay_basis     *basis = make_basis(context, kind, 17);
+    assay_basis     *basis = basis_make(context, kind, 17);
     double           values[17 * 17];
     assay_vec3       gradients[17 * 17];
     for (size_t row = 0; row < table->rows; row += 3) {
@@ -238,5 +217,5 @@ int main(void)
         cmocka_unit_test(zernike_is_right),    cmocka_unit_test(makhotkin_is_right),
         cmocka_unit_test(gradients_are_right), cmocka_unit_test(clamped_cosine_is_right),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, basis_set_up, basis_tear_down);
 }

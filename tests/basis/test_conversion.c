@@ -13,34 +13,13 @@
 #include "assay/basis.h"
 #include "core/numerics.h"
 #include "core/random.h"
+#include "support/basis_fixture.h"
 #include "support/failing_context.h"
 #include "support/near.h"
 
 enum { LARGEST = ASSAY_BASIS_MAX_ORDER };
 
 static assay_context *context_of(void **state) { return *state; }
-
-static int set_up(void **state)
-{
-    assay_context *context = NULL;
-    assert_int_equal(assay_context_create(NULL, &context), ASSAY_OK);
-    *state = context;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assay_context_destroy(*state);
-    return 0;
-}
-
-static assay_basis *make(assay_context *context, assay_basis_kind kind, int order,
-                         assay_convention convention)
-{
-    assay_basis *basis = NULL;
-    assert_int_equal(assay_basis_create(context, kind, order, convention, &basis), ASSAY_OK);
-    return basis;
-}
 
 /* Dense, rows by `to`. */
 static double *dense(assay_context *context, const assay_basis *from, const assay_basis *to)
@@ -114,8 +93,8 @@ static void second_method(int m, long double (*c)[LARGEST])
 static void test_second_method(void **state)
 {
     assay_context *context = context_of(state);
-    assay_basis   *sh      = make(context, ASSAY_BASIS_SH, LARGEST, ASSAY_CONVENTION_THESIS);
-    assay_basis   *hsh     = make(context, ASSAY_BASIS_HSH, LARGEST, ASSAY_CONVENTION_THESIS);
+    assay_basis   *sh  = basis_make_in(context, ASSAY_BASIS_SH, LARGEST, ASSAY_CONVENTION_THESIS);
+    assay_basis   *hsh = basis_make_in(context, ASSAY_BASIS_HSH, LARGEST, ASSAY_CONVENTION_THESIS);
     double        *c = dense(context, sh, hsh), worst = 0.0;
     const size_t   n                = LARGEST * LARGEST;
     long double(*expected)[LARGEST] = malloc(sizeof(long double) * n);
@@ -159,8 +138,8 @@ static void test_known_entries(void **state)
                  {7, 3, -.1581}, {7, 7, .2117},  {4, 4, .6187}, {8, 8, .6187}, {1, 3, 0},
                  {4, 8, 0},      {1, 0, 0}};
     assay_context *context = context_of(state);
-    assay_basis   *sh      = make(context, ASSAY_BASIS_SH, 4, ASSAY_CONVENTION_PLAIN);
-    assay_basis   *hsh     = make(context, ASSAY_BASIS_HSH, 3, ASSAY_CONVENTION_PLAIN);
+    assay_basis   *sh      = basis_make_in(context, ASSAY_BASIS_SH, 4, ASSAY_CONVENTION_PLAIN);
+    assay_basis   *hsh     = basis_make_in(context, ASSAY_BASIS_HSH, 3, ASSAY_CONVENTION_PLAIN);
     double        *c       = dense(context, sh, hsh);
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         assert_near(c[known[i].row * 16 + known[i].column], known[i].value, 5.01e-4 * 0.1 + 3.5e-4);
@@ -181,9 +160,9 @@ static void test_known_entries(void **state)
 static void test_transposed(void **state)
 {
     assay_context *context = context_of(state);
-    assay_basis   *sh      = make(context, ASSAY_BASIS_SH, 3, ASSAY_CONVENTION_KONTKANEN);
-    assay_basis   *plain   = make(context, ASSAY_BASIS_SH, 3, ASSAY_CONVENTION_PLAIN);
-    assay_basis   *hsh     = make(context, ASSAY_BASIS_HSH, 6, ASSAY_CONVENTION_THESIS);
+    assay_basis   *sh      = basis_make_in(context, ASSAY_BASIS_SH, 3, ASSAY_CONVENTION_KONTKANEN);
+    assay_basis   *plain   = basis_make_in(context, ASSAY_BASIS_SH, 3, ASSAY_CONVENTION_PLAIN);
+    assay_basis   *hsh     = basis_make_in(context, ASSAY_BASIS_HSH, 6, ASSAY_CONVENTION_THESIS);
     double        *c = dense(context, sh, hsh), *back = dense(context, hsh, sh),
            *p = dense(context, plain, hsh);
     for (size_t i = 0; i < 36; i++) {
@@ -207,8 +186,8 @@ static void test_transposed(void **state)
 static void test_exact_functions(void **state)
 {
     assay_context *context = context_of(state);
-    assay_basis   *sh      = make(context, ASSAY_BASIS_SH, 6, ASSAY_CONVENTION_THESIS);
-    assay_basis   *hsh     = make(context, ASSAY_BASIS_HSH, 6, ASSAY_CONVENTION_PLAIN);
+    assay_basis   *sh      = basis_make_in(context, ASSAY_BASIS_SH, 6, ASSAY_CONVENTION_THESIS);
+    assay_basis   *hsh     = basis_make_in(context, ASSAY_BASIS_HSH, 6, ASSAY_CONVENTION_PLAIN);
     assay_sparse  *c       = NULL;
     assert_int_equal(assay_basis_conversion(context, sh, hsh, &c), ASSAY_OK);
     double in[36] = {0.0}, out[36], v[36];
@@ -242,8 +221,8 @@ static void test_exact_functions(void **state)
 static void defect(assay_context *context, int hsh_order, int sh_order, double *largest_out,
                    double *rms_out, double *constant_out)
 {
-    assay_basis *sh  = make(context, ASSAY_BASIS_SH, sh_order, ASSAY_CONVENTION_THESIS);
-    assay_basis *hsh = make(context, ASSAY_BASIS_HSH, hsh_order, ASSAY_CONVENTION_THESIS);
+    assay_basis *sh  = basis_make_in(context, ASSAY_BASIS_SH, sh_order, ASSAY_CONVENTION_THESIS);
+    assay_basis *hsh = basis_make_in(context, ASSAY_BASIS_HSH, hsh_order, ASSAY_CONVENTION_THESIS);
     double      *c   = dense(context, sh, hsh);
     const size_t n = assay_basis_count(hsh), m = assay_basis_count(sh);
     double      *e = calloc(n * n, sizeof *e), squares = 0.0;
@@ -329,8 +308,8 @@ static assay_status convert(assay_context *context, void *user)
 static void test_refusals(void **state)
 {
     assay_context *context = context_of(state);
-    assay_basis   *sh      = make(context, ASSAY_BASIS_SH, 2, ASSAY_CONVENTION_THESIS);
-    assay_basis   *esh     = make(context, ASSAY_BASIS_ESH, 2, ASSAY_CONVENTION_THESIS);
+    assay_basis   *sh      = basis_make_in(context, ASSAY_BASIS_SH, 2, ASSAY_CONVENTION_THESIS);
+    assay_basis   *esh     = basis_make_in(context, ASSAY_BASIS_ESH, 2, ASSAY_CONVENTION_THESIS);
     assay_sparse  *c       = NULL;
     assert_int_equal(assay_basis_conversion(context, sh, sh, &c), ASSAY_ERR_ARGUMENT);
     assert_int_equal(assay_basis_conversion(context, sh, esh, &c), ASSAY_ERR_ARGUMENT);
@@ -348,5 +327,5 @@ int main(void)
         cmocka_unit_test(test_transposed),    cmocka_unit_test(test_exact_functions),
         cmocka_unit_test(test_round_trip),    cmocka_unit_test(test_refusals),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, basis_set_up, basis_tear_down);
 }

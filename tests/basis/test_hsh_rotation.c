@@ -13,6 +13,7 @@
 
 #include "assay/basis.h"
 #include "core/numerics.h"
+#include "support/basis_fixture.h"
 #include "support/failing_context.h"
 #include "support/hsh_matrix.h"
 #include "support/near.h"
@@ -22,20 +23,6 @@ static const double PI = ASSAY_PI;
 static const assay_hsh_rotation_options EXACT = {.way = ASSAY_HSH_EXACT};
 
 static assay_context *context_of(void **state) { return *state; }
-
-static int set_up(void **state)
-{
-    assay_context *context = NULL;
-    assert_int_equal(assay_context_create(NULL, &context), ASSAY_OK);
-    *state = context;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assay_context_destroy(*state);
-    return 0;
-}
 
 /* ---- the second method ---- */
 
@@ -86,7 +73,7 @@ static double *second_method(const assay_basis *hsh, double turn, double gap, bo
 static void test_second_method(void **state)
 {
     assay_context      *context    = context_of(state);
-    static const double angles[]   = {1e-9, 0.01, 0.3, 1.0, 0.5 * ASSAY_PI, 2.2, 3.1};
+    static const double angles[]   = {1e-16, 1e-9, 0.01, 0.3, 1.0, 0.5 * ASSAY_PI, 2.2, 3.1};
     double              worst_turn = 0.0, worst_digon = 0.0;
     for (int order = 3; order <= 5; order += 2) {
         assay_basis *hsh = hsh_basis(context, order, ASSAY_CONVENTION_THESIS);
@@ -318,6 +305,31 @@ static assay_status all_ways(assay_context *context, void *user)
     return status;
 }
 
+/* Small turns move entries by less than hsh_rotation.c proves, and such as cannot be seen are none.
+ * (That takes no time, at the largest order, too.) */
+static void test_small_turns(void **state)
+{
+    assay_context *context = context_of(state);
+    for (int order = 1; order <= 33; order += order < 9 ? 1 : 24) {
+        assay_basis *hsh   = hsh_basis(context, order, ASSAY_CONVENTION_THESIS);
+        const size_t n     = assay_basis_count(hsh);
+        const double bound = 4.0 / PI * (order + 2) * (2 * order - 1);
+        double      *one   = hsh_turned(hsh, context, EXACT, 0.0);
+        for (double beta = 0.1; beta > 1e-16 && order < 9; beta *= 1e-3) {
+            double *turned = hsh_turned(hsh, context, EXACT, beta);
+            assert_true(hsh_distance(n, turned, one) <= bound * beta + 2e-14);
+            free(turned);
+        }
+        for (int k = 0; k < 2; k++) {
+            double *turned = hsh_turned(hsh, context, EXACT, k ? -1e-300 : 0.99 * 0x1p-54 / bound);
+            assert_true(hsh_distance(n, turned, one) == 0.0);
+            free(turned);
+        }
+        free(one);
+        assay_basis_destroy(hsh);
+    }
+}
+
 static void test_refusals(void **state)
 {
     assay_context *context = context_of(state);
@@ -368,6 +380,7 @@ int main(void)
         cmocka_unit_test(test_second_method), cmocka_unit_test(test_identities),
         cmocka_unit_test(test_orders),        cmocka_unit_test(test_furnace),
         cmocka_unit_test(test_any_rotation),  cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_small_turns),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, basis_set_up, basis_tear_down);
 }

@@ -13,6 +13,7 @@
 #include "assay/basis.h"
 #include "core/numerics.h"
 #include "math/quadrature.h"
+#include "support/basis_fixture.h"
 #include "support/hsh_matrix.h"
 #include "support/near.h"
 
@@ -24,20 +25,6 @@ static const assay_hsh_rotation_options ANALYTICAL = {.way = ASSAY_HSH_ANALYTICA
 enum { RINGS = 96, SECTORS = 192 };
 
 static assay_context *context_of(void **state) { return *state; }
-
-static int set_up(void **state)
-{
-    assay_context *context = NULL;
-    assert_int_equal(assay_context_create(NULL, &context), ASSAY_OK);
-    *state = context;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assay_context_destroy(*state);
-    return 0;
-}
 
 /* ---- lobes: cos^k about the pole, turned by beta ---- */
 
@@ -247,5 +234,5 @@ int main(void)
         cmocka_unit_test(test_conversion_converges),
         cmocka_unit_test(test_table),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, basis_set_up, basis_tear_down);
 }

@@ -10,34 +10,12 @@
 #include <string.h>
 
 #include "assay/basis.h"
+#include "support/basis_fixture.h"
 #include "support/failing_context.h"
 #include "support/near.h"
 
 enum { ORDER = 5, MOST = ORDER * ORDER };
 static const double PI = 3.14159265358979323846;
-
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
-
-static assay_basis *make(assay_context *context, assay_basis_kind kind, int order)
-{
-    assay_basis *basis = NULL;
-    assert_int_equal(assay_basis_create(context, kind, order, ASSAY_CONVENTION_THESIS, &basis),
-                     ASSAY_OK);
-    return basis;
-}
 
 /* All functions of a basis as channels. */
 static void own_functions(void *user, assay_vec3 d, double *values_out)
@@ -50,7 +28,7 @@ static void own_functions(void *user, assay_vec3 d, double *values_out)
 static void functions_have_unit_coefficients(void **state)
 {
     for (int kind = 0; kind < ASSAY_BASIS_KIND_COUNT; kind++) {
-        assay_basis *basis = make(*state, (assay_basis_kind)kind, ORDER);
+        assay_basis *basis = basis_make(*state, (assay_basis_kind)kind, ORDER);
         const size_t n     = assay_basis_count(basis);
         double       c[MOST * MOST];
         assert_int_equal(
@@ -73,7 +51,7 @@ static void fifth_power(void *user, assay_vec3 d, double *values_out)
 static void fifth_power_is_in_hsh_from_order_6(void **state)
 {
     for (int order = 5; order <= 7; order++) {
-        assay_basis *basis = make(*state, ASSAY_BASIS_HSH, order);
+        assay_basis *basis = basis_make(*state, ASSAY_BASIS_HSH, order);
         double       c[49], energy = 0.0;
         assert_int_equal(assay_basis_project(basis, *state, fifth_power, NULL, 1, 16, 16, c),
                          ASSAY_OK);
@@ -106,7 +84,7 @@ static void one(void *user, assay_vec3 d, double *values_out)
 /* Radiance 1 gives irradiance pi, and c_0 = sqrt(4 pi). */
 static void furnace_through_the_clamped_cosine(void **state)
 {
-    assay_basis *basis = make(*state, ASSAY_BASIS_SH, ORDER);
+    assay_basis *basis = basis_make(*state, ASSAY_BASIS_SH, ORDER);
     double       c[MOST], a[ORDER], y[MOST], irradiance = 0.0;
     assert_int_equal(assay_basis_project(basis, *state, one, NULL, 1, 8, 12, c), ASSAY_OK);
     assert_int_equal(assay_clamped_cosine(ORDER, a), ASSAY_OK);
@@ -126,7 +104,7 @@ static void furnace_through_the_clamped_cosine(void **state)
 static void monte_carlo_agrees_with_quadrature(void **state)
 {
     for (int kind = 0; kind < ASSAY_BASIS_KIND_COUNT; kind++) {
-        assay_basis *basis = make(*state, (assay_basis_kind)kind, 3);
+        assay_basis *basis = basis_make(*state, (assay_basis_kind)kind, 3);
         const size_t n     = 2 * assay_basis_count(basis);
         double       exact[18], mean[18], variance[18], z2 = 0.0;
         assert_int_equal(
@@ -152,7 +130,7 @@ static void samples_of_somebody_else(void **state)
     enum { COUNT = 20000 };
     static assay_vec3 d[COUNT];
     static double     pdf[COUNT], value[2 * COUNT];
-    assay_basis      *basis = make(*state, ASSAY_BASIS_HSH, 3);
+    assay_basis      *basis = basis_make(*state, ASSAY_BASIS_HSH, 3);
     double            exact[18], mean[18], variance[18];
     for (int i = 0; i < COUNT; i++) {
         const double z = (2.0 * i + 1.0) / COUNT - 1.0, s = sqrt(1.0 - z * z);
@@ -193,7 +171,7 @@ static void not_a_number(void *user, assay_vec3 d, double *values_out)
 
 static void bad_input_leaves_outputs_alone(void **state)
 {
-    assay_basis *basis = make(*state, ASSAY_BASIS_SH, 2);
+    assay_basis *basis = basis_make(*state, ASSAY_BASIS_SH, 2);
     double       c[4] = {9.0, 9.0, 9.0, 9.0}, v[4] = {9.0, 9.0, 9.0, 9.0};
     const struct {
         assay_direction_function f;
@@ -247,8 +225,8 @@ static double residual(const assay_basis *basis, const double *c)
 /* The best fit beats the plain projection, and no coefficient can be moved to a better fit. */
 static void least_squares_are_least(void **state)
 {
-    assay_basis *fit = make(*state, ASSAY_BASIS_LSOSH, 4);
-    assay_basis *sh  = make(*state, ASSAY_BASIS_SH, 4);
+    assay_basis *fit = basis_make(*state, ASSAY_BASIS_LSOSH, 4);
+    assay_basis *sh  = basis_make(*state, ASSAY_BASIS_SH, 4);
     double       c[16], plain[16];
     assert_int_equal(assay_basis_project(fit, *state, smooth_above, NULL, 1, 40, 40, c), ASSAY_OK);
     assert_int_equal(assay_basis_project(sh, *state, smooth_above, NULL, 1, 40, 40, plain),
@@ -270,8 +248,8 @@ static void least_squares_are_least(void **state)
 /* Order 14 still fits to rounding; order 15 has too few digits left and is refused. */
 static void least_squares_hold_up_to_order_14(void **state)
 {
-    assay_basis *last = make(*state, ASSAY_BASIS_LSOSH, 14);
-    assay_basis *next = make(*state, ASSAY_BASIS_LSOSH, 15);
+    assay_basis *last = basis_make(*state, ASSAY_BASIS_LSOSH, 14);
+    assay_basis *next = basis_make(*state, ASSAY_BASIS_LSOSH, 15);
     double       c[225];
     assert_int_equal(assay_basis_project(last, *state, smooth_above, NULL, 1, 60, 60, c), ASSAY_OK);
     assert_true(residual(last, c) < 1e-26);
@@ -305,7 +283,7 @@ static void stopped_on_the_way(void **state)
     for (int random = 0; random < 2; random++) {
         failing_memory stopping = {.cancel_at = 2};
         assay_context *context  = failing_context(&stopping);
-        assay_basis   *basis    = make(context, ASSAY_BASIS_SH, 1);
+        assay_basis   *basis    = basis_make(context, ASSAY_BASIS_SH, 1);
         double         c = 9.0, v = 9.0;
         assert_int_equal(
             random ? assay_basis_project_random(basis, context, one, NULL, 1, 10000, 0, &c, &v)
@@ -327,14 +305,20 @@ static void refused_memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(functions_have_unit_coefficients, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(fifth_power_is_in_hsh_from_order_6, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(furnace_through_the_clamped_cosine, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(monte_carlo_agrees_with_quadrature, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(samples_of_somebody_else, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(bad_input_leaves_outputs_alone, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(least_squares_are_least, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(least_squares_hold_up_to_order_14, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(functions_have_unit_coefficients, basis_set_up,
+                                        basis_tear_down),
+        cmocka_unit_test_setup_teardown(fifth_power_is_in_hsh_from_order_6, basis_set_up,
+                                        basis_tear_down),
+        cmocka_unit_test_setup_teardown(furnace_through_the_clamped_cosine, basis_set_up,
+                                        basis_tear_down),
+        cmocka_unit_test_setup_teardown(monte_carlo_agrees_with_quadrature, basis_set_up,
+                                        basis_tear_down),
+        cmocka_unit_test_setup_teardown(samples_of_somebody_else, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(bad_input_leaves_outputs_alone, basis_set_up,
+                                        basis_tear_down),
+        cmocka_unit_test_setup_teardown(least_squares_are_least, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(least_squares_hold_up_to_order_14, basis_set_up,
+                                        basis_tear_down),
         cmocka_unit_test(stopped_on_the_way),
         cmocka_unit_test(refused_memory),
     };

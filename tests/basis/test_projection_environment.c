@@ -9,26 +9,11 @@
 #include <math.h>
 
 #include "assay/basis.h"
-#include "support/failing_context.h"
+#include "support/basis_fixture.h"
 #include "support/near.h"
 
 enum { WIDTH = 8, HEIGHT = 4, ORDER = 5, COUNT = ORDER * ORDER };
 static const double PI = 3.14159265358979323846;
-
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
 
 static void add_channel(assay_image *map, const char *name)
 {
@@ -208,11 +193,12 @@ static void bad_input(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(constant_map, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(single_texels_against_brute_force, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(texels_are_patches, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(axes_of_the_world, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(bad_input, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(constant_map, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(single_texels_against_brute_force, basis_set_up,
+                                        basis_tear_down),
+        cmocka_unit_test_setup_teardown(texels_are_patches, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(axes_of_the_world, basis_set_up, basis_tear_down),
+        cmocka_unit_test_setup_teardown(bad_input, basis_set_up, basis_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

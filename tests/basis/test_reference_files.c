@@ -21,17 +21,17 @@ typedef struct {
 
 /* Degree and order conventions of each: refdata/README.md. */
 static const shape shapes[] = {
-    {"accuracy_phong", 2, 6, 4 * 10},
-    {"accuracy_ward", 2, 6, 3 * 10},
+    {"accuracy_phong", 2, 9, 4 * 10},
+    {"accuracy_ward", 2, 9, 3 * 10},
     {"clamped_cosine", 1, 2, 33},
     {"conversion", 3, 2,
      10 * 16 + 2 * (9 * 15 + 8 * 14 + 7 * 13 + 6 * 12 + 5 * 11 + 4 * 10 + 3 * 9 + 2 * 8 + 1 * 7)},
     {"conversion_bands", 3, 2, 33 * 33 + 32 * 32 + 31 * 31 + 17 * 17 + 2 * 2 + 1},
-    {"digon_order10", 2, 100, 100},
+    {"digon_order10", 2, 100, 4 * 100},
     {"digon_order6", 2, 36, 8 * 36},
     {"gauss_legendre", 2, 4, 2 + 3 + 5 + 16 + 64},
     {"hsh_gradients", 4, 17 * 17, 3 * 12},
-    {"hsh_rotation_order10", 2, 100, 100},
+    {"hsh_rotation_order10", 2, 100, 4 * 100},
     {"hsh_rotation_order6", 2, 36, 8 * 36},
     {"hsh_values", 3, 33 * 33, 40},
     {"makhotkin_sqrt_values", 3, 17 * 17, 18},

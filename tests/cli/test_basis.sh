@@ -58,10 +58,13 @@ whole number|table --basis sh --order 2 --phi-steps 65537
 name it so|table --basis sh --order 2 -o x.png
 --env or --lobe|project --basis sh --order 3
 one thing at a time|project --env x.exr --lobe phong:5@0 --order 3
---basis sh|project --env x.exr --basis hsh --order 3
+of --basis sh|project --env x.exr --basis hsh --order 3 --irradiance
+in a hemispherical basis|project --env x.exr --order 3 --normal 0,1,0
+in a hemispherical basis|project --lobe phong:5@0 --basis hsh --order 3 --normal 0,1,0
+three numbers|project --env x.exr --basis hsh --order 3 --normal 0,1
 --order is missing|project --env x.exr
 --basis is missing|project --lobe phong:5@0 --order 3
-still move by|project --lobe phong:1e7@30 --basis hsh --order 1
+--samples takes|project --lobe ward:0.5,0.5@89.999 --basis hsh --order 1
 are of --lobe|project --env x.exr --order 3 --samples 9
 one way at a time|project --lobe phong:5@0 --basis sh --order 3 --samples 9 --theta-nodes 5
 --table-steps of --via table|rotate --basis hsh --via exact --order 2 --beta-deg 30 --table-steps 5
@@ -82,7 +85,10 @@ phong:EXPONENT@THETA|accuracy --lobe nan
 [0, 90)|accuracy --lobe phong:5@-1
 exponent is >= 0|accuracy --lobe phong:-5@0
 a width > 0|accuracy --lobe ward:0,0.5@0
-too narrow|accuracy --lobe ward:0.00001,0.00001@30 --basis hsh --max-order 2
+too close to the horizon|accuracy --lobe ward:0.5,0.5@89.999 --basis hsh --max-order 1
+is 0 in double precision|accuracy --lobe ward:1e300,1e300@10 --basis hsh --max-order 2
+is inf in double precision|accuracy --lobe ward:1e-200,1e-200@10 --basis hsh --max-order 2
+too narrow or too weak|project --lobe ward:1e300,1e300@10 --basis hsh --order 2
 from 1 to 33|accuracy --lobe phong:5@0 --max-order 34
 singular|project --lobe phong:5@0 --basis lsosh --order 20
 --from is missing|convert --to sh --order 3
@@ -101,7 +107,9 @@ beta|rotate --basis hsh --order 3 --beta-deg -91 --via digon
 beta|rotate --basis hsh --order 3 --beta-deg 91 --via table
 beta|rotate --basis hsh --order 3 --beta-deg 181
 takes a number|rotate --basis hsh --order 3 --beta-deg nan
-within -pi|digon --order 3 --beta-deg 200
+-180 to 180 degrees|digon --order 3 --beta-deg 200
+takes thesis|convert --from sh --to hsh --order 3 --to-convention mine
+kontkanen|convert --from hsh --to sh --order 4 --to-convention kontkanen
 --beta-deg is missing|digon --order 3
 -o F.png is missing|plot --basis hsh --l 2 --m 1
 --basis is missing|plot --l 2 --m 1 -o x.png
@@ -131,11 +139,17 @@ holds "eval: a hexadecimal float" " 0 0 0 0x1.20dd750429b6dp-2" \
     basis eval --basis sh --order 1 --dir 0,0,1 --hex
 holds "convert: C[0][0] = 1 / sqrt(2), exact zeros" " 1,0 0 0 0.353553 0" \
     basis convert --from sh --to hsh --order 2
-holds "rotate: 90 degrees about y move z to x" " 1,1 0 0 1.000000 0.000000" \
+holds "rotate: 90 degrees about y move z to x" " 1,1 0 0 1.000000 0" \
     basis rotate --basis sh --order 2 --beta-deg 90 --convention plain
 holds "digon: M[0][0] = 1 - beta / pi" " 0,0 0.833333" basis digon --order 1 --beta-deg 30
 holds "accuracy: HSH hold z^5" " 6 1.000000000 ( 36)" \
     basis accuracy --lobe phong:5@0 --basis hsh --max-order 6
+holds "convert: another sign and order on the other side" " 1,-1 0 -0.673872 0 0" \
+    basis convert --from hsh --to sh --order 2 --to-convention kontkanen
+holds "rotate: what is small is told from nothing" " 1,1 0 0 1.75e-10 1.000000" \
+    basis rotate --basis sh --order 2 --beta-deg 1e-8 --convention plain
+holds "accuracy: a needle" " 2 2e-300 ( 4)" \
+    basis accuracy --lobe phong:2e300@10 --basis sh --max-order 2
 run basis table --basis esh --order 3 --theta-steps 2 --phi-steps 4
 went_well && [ "$(wc -l < "$folder/stdout")" -eq 13 ]
 result $? "table: a line a direction"
@@ -156,6 +170,12 @@ accepts "a map" render $box --size 16x8 --spp 1 -o "$folder/map.exr"
 for options in "" "--irradiance" "--rotation-deg 30" "--convention plain" "--json" "--hex"; do
     accepts "project --env $options" basis project --env "$folder/map.exr" --order 4 $options
 done
+for normal in 0,0,1 0,1,0 0.6,0,-0.8; do
+    accepts "project --env on the hemisphere about $normal" \
+        basis project --env "$folder/map.exr" --basis hsh --order 4 --normal $normal
+done
+refuses "a normal that is none" 2 "unit vector" \
+    basis project --env "$folder/map.exr" --basis hsh --order 4 --normal 0,1,1
 for options in "" "--samples 1000 --seed 3" "--theta-nodes 16 --phi-nodes 16"; do
     accepts "project --lobe $options" basis project --lobe ward:0.2,0.5@30,45 --basis lsosh \
         --order 4 $options

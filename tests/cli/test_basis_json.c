@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "assay/assay.h"
+#include "support/near.h"
 #include "support/run_json.h"
 #include "support/temporary.h"
 
@@ -141,6 +142,17 @@ static void conversion_is_not_square(void **state)
     names_functions(json_member(json, "columns"), hsh);
     is_matrix(json_member(json, "matrix"), dense, 16, 4);
     cJSON_Delete(json);
+    json = run_json(0, "basis convert --from hsh --to sh --order 2 --to-convention plain --json");
+    is_text(json, "rows/convention", "plain");
+    is_text(json, "columns/convention", "thesis");
+    for (int i = 0; i < 16; i++) { /* rows with odd m */
+        const double other = i / 4 == 1 || i / 4 == 3 ? -dense[i] : dense[i];
+        assert_near(
+            cJSON_GetArrayItem(cJSON_GetArrayItem(json_member(json, "matrix"), i / 4), i % 4)
+                ->valuedouble,
+            other, 1e-15);
+    }
+    cJSON_Delete(json);
     assay_sparse_destroy(sparse);
     assay_basis_destroy(hsh);
     assay_basis_destroy(sh);
@@ -231,6 +243,19 @@ static void projection_of_a_map(void **state)
     json = run_json(0, "basis project --env %s --order 3 --irradiance --json", path);
     is_matrix(json_member(json, "values"), c, 3, 9);
     cJSON_Delete(json);
+    const double normal[3] = {0.36, 0.48, -0.8};
+    double       frame[9];
+    assay_basis *hsh = make(*state, ASSAY_BASIS_HSH, 3, ASSAY_CONVENTION_THESIS);
+    assert_int_equal(assay_rotation_to_pole((assay_vec3){0.36, 0.48, -0.8}, frame), ASSAY_OK);
+    assert_int_equal(assay_basis_project_environment_hemisphere(hsh, *state, map, 0.0, frame, c),
+                     ASSAY_OK);
+    json = run_json(
+        0, "basis project --env %s --basis hsh --order 3 --normal 0.36,0.48,-0.8 --json", path);
+    is_text(json, "basis", "hsh");
+    is_list(json_member(json, "normal"), normal, 3);
+    is_matrix(json_member(json, "values"), c, 3, 9);
+    cJSON_Delete(json);
+    assay_basis_destroy(hsh);
     assay_image_destroy(map);
     assay_basis_destroy(basis);
     temporary_destroy(&t);
@@ -253,8 +278,7 @@ static void projection_of_a_lobe(void **state)
     is_list(json_member(json, "values"), c, 4);
     is_list(json_member(json, "variances"), v, 4);
     cJSON_Delete(json);
-    assert_int_equal(assay_basis_project(basis, *state, lobe_value, &lobe, 1, 128, 256, c),
-                     ASSAY_OK);
+    assert_int_equal(assay_basis_project_lobe(basis, *state, &lobe, c), ASSAY_OK);
     json = run_json(0, "basis project --lobe phong:5@0 --basis hsh --order 2 --json");
     is_list(json_member(json, "values"), c, 4);
     cJSON_Delete(json);

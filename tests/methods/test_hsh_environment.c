@@ -11,6 +11,7 @@
 #include "assay/compare.h"
 #include "core/numerics.h"
 #include "math/frame.h"
+#include "support/failing_context.h"
 #include "support/measure.h"
 #include "support/scene_builder.h"
 #include "support/temporary.h"
@@ -268,7 +269,23 @@ static void refusals(void **state)
     const setting orders[] = {
         {"brdf_basis", "sh"}, {"order", "8"}, {"sh_order", "4"}, {NULL, NULL}};
     refuses("scenes/spheres/spheres.gltf", none, ASSAY_ERR_UNSUPPORTED, "'mirror'");
+    const setting hours[] = {{"grid", "512"}, {"nodes", "512"}, {"order", "33"}, {NULL, NULL}};
     refuses(LOBES, orders, ASSAY_ERR_ARGUMENT, "'sh_order'");
+    refuses(LOBES, hours, ASSAY_ERR_ARGUMENT, "hours of work");
+}
+
+/* Lights of the scene's own are not what this method is for, and it says so. */
+static void warns_of_emitters(void **state)
+{
+    const setting  settings[] = {{"nodes", "8"}, {"grid", "4"}, {"spp", "1"}, {NULL, NULL}};
+    failing_memory memory     = {0};
+    assay_context *context    = failing_context(&memory);
+    assay_scene   *scene      = load(context, "scenes/cornell-box/cornell-box.gltf", NULL, 0.0);
+    (void)state;
+    assay_image_destroy(render(context, scene, "hsh-environment", NULL, settings));
+    assert_non_null(strstr(memory.log, "nothing is lit by them"));
+    assay_scene_destroy(scene);
+    assay_context_destroy(context);
 }
 
 int main(void)
@@ -279,6 +296,7 @@ int main(void)
         cmocka_unit_test(agrees_from_behind),
         cmocka_unit_test(error_falls_with_the_order),
         cmocka_unit_test(refusals),
+        cmocka_unit_test(warns_of_emitters),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -77,8 +77,9 @@ static assay_status create(assay_context *context, const assay_params *params, v
         .nodes      = assay_params_int(params, "nodes"),
         .brdf_in_sh = assay_params_choice(params, "brdf_basis") == 1,
     };
-    assay_status status = ASSAY_OK;
-    if (state->brdf_in_sh && state->order > state->sh_order) {
+    assay_status status =
+        assay_material_grids_check_work(context, state->side, state->nodes, state->order);
+    if (status == ASSAY_OK && state->brdf_in_sh && state->order > state->sh_order) {
         status =
             assay_fail(context, ASSAY_ERR_ARGUMENT,
                        "parameter 'order' is %d, but with brdf_basis=sh there are only 'sh_order' "
@@ -138,6 +139,21 @@ static assay_status dump(const hsh_environment *s, const assay_frame *frame)
     return status;
 }
 
+static void warn_of_emitters(const hsh_environment *s, const assay_scene *scene)
+{
+    bool emits = scene->punctual_count > 0;
+    for (uint32_t i = 0; i < scene->shape_count && !emits; i++) {
+        emits = assay_material_emits(&scene->materials[scene->shapes[i].material]);
+    }
+    if (emits) {
+        assay_inform(
+            s->context, ASSAY_LOG_WARNING,
+            "%s: has lights of its own; hsh-environment shows those that are surfaces, but "
+            "nothing is lit by them",
+            scene->path);
+    }
+}
+
 static assay_status prepare(void *user, const assay_frame *frame)
 {
     hsh_environment   *s      = user;
@@ -154,6 +170,7 @@ static assay_status prepare(void *user, const assay_frame *frame)
                          scene->path);
         }
     }
+    warn_of_emitters(s, scene);
     if (status == ASSAY_OK && frame->dump) {
         status = dump(s, frame);
     }

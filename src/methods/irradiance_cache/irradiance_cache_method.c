@@ -159,7 +159,7 @@ static assay_status render_image(cache_state *s, const assay_frame *frame, assay
     const assay_cached_light light = {
         .user = s, .fill = fill, .radiance = radiance, .irradiance = irradiance};
     assay_status status = assay_cached_image_render(frame, &s->image, &light, film, counts);
-    assay_irradiance_cache_count_rays(s->cache, counts);
+    assay_irradiance_cache_count(s->cache, counts);
     if (status == ASSAY_OK) {
         report(s);
     }

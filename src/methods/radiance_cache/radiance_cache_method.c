@@ -118,8 +118,11 @@ static assay_status create(assay_context *context, const assay_params *params, v
         .nodes          = assay_params_int(params, "nodes"),
         .beyond_lambert = true,
     };
-    const assay_status status =
-        assay_cache_params_read(context, params, &state->settings.records, &state->image);
+    assay_status status = assay_material_grids_check_work(context, state->grid.side,
+                                                          state->grid.nodes, state->settings.order);
+    status =
+        status ? status
+               : assay_cache_params_read(context, params, &state->settings.records, &state->image);
     if (status != ASSAY_OK) {
         destroy(state);
         return status;
@@ -322,24 +325,21 @@ static assay_status radiance(void *user, const assay_cached_point *point, uint32
 
 static void report(const cache_state *s)
 {
+    assay_irradiance_cache *radiance =
+        s->radiance ? assay_radiance_cache_records(s->radiance) : NULL;
     const uint64_t nearest = assay_irradiance_cache_unserved(s->irradiance);
-    const uint64_t paths =
-        s->radiance ? assay_irradiance_cache_unserved(assay_radiance_cache_records(s->radiance))
-                    : 0;
-    if (nearest > 0 || paths > 0) {
-        assay_inform(
-            s->context, ASSAY_LOG_WARNING,
-            "radiance-cache: look-ups that no record reaches (max_records, or records that "
-            "shrank): %llu of irradiance, answered by the nearest record, and %llu of "
-            "radiance, answered by paths",
-            (unsigned long long)nearest, (unsigned long long)paths);
-    }
+    const uint64_t paths   = radiance ? assay_irradiance_cache_unserved(radiance) : 0;
     assay_inform(s->context, ASSAY_LOG_INFO,
                  "radiance-cache: %u irradiance and %u radiance records",
                  assay_record_store_count(assay_irradiance_cache_store(s->irradiance)),
-                 s->radiance ? assay_record_store_count(assay_irradiance_cache_store(
-                                   assay_radiance_cache_records(s->radiance)))
-                             : 0);
+                 radiance ? assay_record_store_count(assay_irradiance_cache_store(radiance)) : 0);
+    if (nearest > 0 || paths > 0) {
+        assay_inform(s->context, ASSAY_LOG_WARNING,
+                     "radiance-cache: look-ups that no record reaches (max_records, or records "
+                     "that shrank): %llu of irradiance, answered by the nearest record, and %llu "
+                     "of radiance, answered by paths",
+                     (unsigned long long)nearest, (unsigned long long)paths);
+    }
 }
 
 static assay_status render(void *state, const assay_frame *frame, assay_film *film,
@@ -349,9 +349,9 @@ static assay_status render(void *state, const assay_frame *frame, assay_film *fi
     const assay_cached_light light = {
         .user = s, .fill = fill, .radiance = radiance, .irradiance = irradiance};
     const assay_status status = assay_cached_image_render(frame, &s->image, &light, film, counts);
-    assay_irradiance_cache_count_rays(s->irradiance, counts);
+    assay_irradiance_cache_count(s->irradiance, counts);
     if (s->radiance) {
-        assay_irradiance_cache_count_rays(assay_radiance_cache_records(s->radiance), counts);
+        assay_irradiance_cache_count(assay_radiance_cache_records(s->radiance), counts);
     }
     if (status == ASSAY_OK) {
         report(s);

@@ -1,0 +1,193 @@
+/* bench_caches.c - time to the same error: irradiance-cache against path.
+ *
+ *     bench_caches [ROUNDS]
+ *
+ * On a view, irradiance-cache renders once, and path as often as it takes to know its cost: both on
+ * one thread, by processor time.  The relative error of an image (docs/conventions.md, over all
+ * pixels and channels) is measured against two independent references by path: the mean of the
+ * product of the two differences is free of their noise.  Path's own error is that of its measured
+ * variance; it falls with the square root of its samples, which gives the time that it would take
+ * to the error of irradiance-cache. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "assay/render.h"
+#include "core/numerics.h"
+
+enum { SIDE = 256, CHANNELS = 3, REFERENCE_SPP = 256 };
+
+typedef struct {
+    const char *name, *scene, *camera;
+    int         bounces; /* 0: all */
+    const char *a, *spp, *theta, *phi, *r_min_pixels;
+    double      asked; /* ratio */
+} view;
+
+static const view VIEWS[] = {
+    {"Cornell box, all bounces", "scenes/cornell-box/cornell-box.gltf", NULL, 0, "0.3", "64", "16",
+     "50", "3", 25},
+    {"Cornell box, one bounce", "scenes/cornell-box/cornell-box.gltf", NULL, 2, "0.3", "64", "16",
+     "50", "3", 7},
+    {"Sponza, atrium", "sponza_dabrovic/sponza_dabrovic.glb", "atrium", 0, "0.3", "64", "16", "50",
+     "3", 15},
+    {"Sponza, atrium, one bounce", "sponza_dabrovic/sponza_dabrovic.glb", "atrium", 2, "0.3", "64",
+     "16", "50", "3", 9},
+    {"Sponza, lower arcade", "sponza_dabrovic/sponza_dabrovic.glb", "lower_arcade", 0, "0.3", "64",
+     "16", "50", "3", 60},
+};
+
+static double seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void require(assay_context *context, assay_status status)
+{
+    if (status != ASSAY_OK) {
+        fprintf(stderr, "bench_caches: %s\n", assay_context_error(context));
+        exit(1);
+    }
+}
+
+typedef struct {
+    assay_image       *image;
+    assay_render_stats stats;
+    double             seconds;
+} result;
+
+static void set(assay_context *context, assay_params *params, const char *name, const char *value)
+{
+    require(context, assay_params_set(params, name, value));
+}
+
+static result render(assay_context *context, assay_scene *scene, const view *v, const char *method,
+                     const char *spp, uint64_t seed)
+{
+    assay_render_options options = assay_render_options_default();
+    assay_params        *params  = NULL;
+    result               r       = {0};
+    options.width = options.height = SIDE;
+    options.camera                 = v->camera;
+    options.layers                 = "color";
+    options.seed                   = seed;
+    require(context, assay_method_params(context, method, &params));
+    set(context, params, "spp", spp);
+    if (v->bounces) {
+        char text[16];
+        snprintf(text, sizeof text, "%d", v->bounces);
+        set(context, params, "bounces", text);
+    }
+    if (strcmp(method, "path") != 0) {
+        set(context, params, "a", v->a);
+        set(context, params, "theta_strata", v->theta);
+        set(context, params, "phi_strata", v->phi);
+        set(context, params, "r_min_pixels", v->r_min_pixels);
+        set(context, params, "estimator", "nee");
+        for (char *o = getenv("BENCH_SET"); o && *o;) {
+            char name[64], value[64];
+            int  n = 0;
+            sscanf(o, "%63[^=]=%63[^,]%n", name, value, &n);
+            set(context, params, name, value);
+            o += n + (o[n] == ',');
+        }
+    }
+    const double start = seconds();
+    require(context, assay_render(scene, method, params, &options, &r.image, &r.stats));
+    r.seconds = seconds() - start;
+    assay_params_destroy(params);
+    return r;
+}
+
+static const float *pixels(const assay_image *image, const char *prefix, int channel)
+{
+    char          name[32];
+    assay_channel found;
+    snprintf(name, sizeof name, "%s%c", prefix, "RGB"[channel]);
+    if (!assay_image_find_channel(image, name, &found)) {
+        exit(1);
+    }
+    return found.data.f32;
+}
+
+/* Squared relative error of an image against two references; of NULL: of the first reference's own
+ * variance, for one sample a pixel. */
+static double squared_error(const assay_image *image, const assay_image *one,
+                            const assay_image *two)
+{
+    double sum = 0.0;
+    for (int c = 0; c < CHANNELS; c++) {
+        const float *a = pixels(one, "", c), *b = pixels(two, "", c);
+        const float *x    = image ? pixels(image, "", c) : NULL;
+        const float *v    = pixels(one, "Variance.", c);
+        double       mean = 0.0;
+        for (int i = 0; i < SIDE * SIDE; i++) {
+            mean += 0.5 * ((double)a[i] + b[i]) / (SIDE * SIDE);
+        }
+        for (int i = 0; i < SIDE * SIDE; i++) {
+            const double truth = 0.5 * ((double)a[i] + b[i]);
+            const double error =
+                x ? ((double)x[i] - a[i]) * ((double)x[i] - b[i]) : (double)v[i] * REFERENCE_SPP;
+            sum += error / (truth * truth + 0.01 * mean * mean);
+        }
+    }
+    return sum / (CHANNELS * SIDE * SIDE);
+}
+
+static void compare(assay_context *context, const view *v)
+{
+    char                path[512];
+    assay_scene        *scene   = NULL;
+    assay_scene_options options = assay_scene_options_default();
+    const char         *shared  = getenv("ASSAY_SHARED_SCENES");
+    options.force_diffuse       = true;
+    snprintf(path, sizeof path, "%s/%s",
+             strncmp(v->scene, "scenes/", 7) == 0 ? "."
+             : shared                             ? shared
+                                                  : "../shared/scenes",
+             v->scene);
+    if (access(path, R_OK) != 0) {
+        printf("%-28s not there: skipped\n", v->name);
+        return;
+    }
+    require(context, assay_scene_load(context, path, &options, &scene));
+    const result cache = render(context, scene, v, "irradiance-cache", v->spp, 1);
+    char         spp[16];
+    snprintf(spp, sizeof spp, "%d", REFERENCE_SPP);
+    const result one = render(context, scene, v, "path", spp, 2);
+    const result two = render(context, scene, v, "path", spp, 3);
+    const double e   = squared_error(cache.image, one.image, two.image);
+    const double s   = squared_error(NULL, one.image, two.image);
+    /* Samples, and so seconds, that path takes to the same error. */
+    const double a_sample = 0.5 * (one.seconds + two.seconds) / REFERENCE_SPP;
+    const double path_for = a_sample * s / e;
+    printf("%-28s relative error %.4f: %7llu records, %.1f s; path %.0f samples, %.0f s: %.1f "
+           "times (asked: %.0f)\n",
+           v->name, sqrt(e), (unsigned long long)cache.stats.records, cache.seconds, s / e,
+           path_for, path_for / cache.seconds, v->asked);
+    assay_image_destroy(cache.image);
+    assay_image_destroy(one.image);
+    assay_image_destroy(two.image);
+    assay_scene_destroy(scene);
+}
+
+int main(int count, char **argv)
+{
+    const assay_context_options options = {.threads = 1};
+    assay_context              *context = NULL;
+    if (assay_context_create(&options, &context) != ASSAY_OK) {
+        return 1;
+    }
+    for (size_t i = 0; i < sizeof VIEWS / sizeof VIEWS[0]; i++) {
+        if (count < 2 || strstr(VIEWS[i].name, argv[1])) {
+            compare(context, &VIEWS[i]);
+        }
+    }
+    assay_context_destroy(context);
+    return 0;
+}
