@@ -67,6 +67,24 @@ static assay_status make_material(assay_context *context, const assay_material *
     return share >= accuracy ? assay_material_grids_create(context, settings, m, grids) : ASSAY_OK;
 }
 
+/* seen: a flag a material, all false. */
+static assay_status make_all(assay_context *context, const assay_scene *scene,
+                             const assay_material_grid_settings *settings, double accuracy,
+                             bool *seen, glossy_materials *made)
+{
+    assay_status status = ASSAY_OK;
+    for (uint32_t i = 0; i < scene->shape_count && status == ASSAY_OK; i++) {
+        const uint32_t        index    = scene->shapes[i].material;
+        const assay_material *material = &scene->materials[index];
+        if (!seen[index] && is_glossy(material)) {
+            status    = make_material(context, material, settings, accuracy, &made->grids[index]);
+            made->any = made->any || made->grids[index].slope;
+        }
+        seen[index] = true;
+    }
+    return status;
+}
+
 assay_status glossy_materials_make(assay_context *context, const assay_scene *scene,
                                    const assay_material_grid_settings *settings, double accuracy,
                                    glossy_materials *materials_out)
@@ -74,16 +92,11 @@ assay_status glossy_materials_make(assay_context *context, const assay_scene *sc
     glossy_materials made = {.context = context, .count = scene->material_count};
     made.grids            = assay_allocate(context, scene->material_count, sizeof *made.grids);
     bool        *seen     = assay_allocate(context, scene->material_count, sizeof *seen);
-    assay_status status =
-        made.grids && seen ? ASSAY_OK : assay_fail_memory(context, "BRDFs in harmonics");
-    for (uint32_t i = 0; i < scene->shape_count && status == ASSAY_OK; i++) {
-        const uint32_t        index    = scene->shapes[i].material;
-        const assay_material *material = &scene->materials[index];
-        if (!seen[index] && is_glossy(material)) {
-            status   = make_material(context, material, settings, accuracy, &made.grids[index]);
-            made.any = made.any || made.grids[index].slope;
-        }
-        seen[index] = true;
+    assay_status status   = ASSAY_ERR_MEMORY;
+    if (made.grids && seen) {
+        status = make_all(context, scene, settings, accuracy, seen, &made);
+    } else {
+        assay_fail_memory(context, "BRDFs in harmonics");
     }
     assay_release(context, seen);
     if (status != ASSAY_OK) {
