@@ -80,15 +80,16 @@ void assay_irradiance_cache_destroy(assay_irradiance_cache *cache)
     }
 }
 
-/* One level, without its next. */
-static assay_status create_level(const assay_world                     *world,
-                                 const assay_irradiance_cache_settings *settings, uint64_t seed,
-                                 int level, assay_irradiance_cache **cache_out)
+/* One level, without its next; NULL, and a status, where that fails. */
+static assay_irradiance_cache *create_level(const assay_world                     *world,
+                                            const assay_irradiance_cache_settings *settings,
+                                            uint64_t seed, int level, assay_status *status_out)
 {
     const assay_scene      *scene = world->scene;
     assay_irradiance_cache *cache = assay_allocate(scene->context, 1, sizeof *cache);
     if (!cache) {
-        return assay_fail_memory(scene->context, "the irradiance cache");
+        *status_out = assay_fail_memory(scene->context, "the irradiance cache");
+        return NULL;
     }
     cache->world        = world;
     cache->context      = scene->context;
@@ -110,10 +111,10 @@ static assay_status create_level(const assay_world                     *world,
                               : assay_hemisphere_create(cache->context, &settings->layout, &cache->hemisphere);
     if (status != ASSAY_OK) {
         destroy(cache);
-        return status;
+        *status_out = status;
+        return NULL;
     }
-    *cache_out = cache;
-    return ASSAY_OK;
+    return cache;
 }
 
 /* A level's light is seen through those above, each of which averages over many of its records and
@@ -138,8 +139,9 @@ assay_status assay_irradiance_cache_create(const assay_world                    
     assay_irradiance_cache        **place = &first;
     const int levels = settings->secondary == ASSAY_SECONDARY_CACHE ? settings->levels : 1;
     for (int level = 0; level < levels && (level == 0 || at.path.bounces >= 2); level++) {
-        const assay_status status = create_level(world, &at, seed, level, place);
-        if (status != ASSAY_OK) {
+        assay_status status = ASSAY_OK;
+        *place              = create_level(world, &at, seed, level, &status);
+        if (!*place) {
             assay_irradiance_cache_destroy(first);
             return status;
         }
@@ -156,10 +158,10 @@ assay_status assay_irradiance_cache_create_beside(assay_irradiance_cache        
                                                   const assay_record_companion          *companion,
                                                   assay_irradiance_cache               **cache_out)
 {
-    assay_irradiance_cache *cache = NULL;
-    const assay_status      status =
-        create_level(beside->world, settings, beside->seed, beside->level + BESIDE, &cache);
-    if (status != ASSAY_OK) {
+    assay_status            status = ASSAY_OK;
+    assay_irradiance_cache *cache =
+        create_level(beside->world, settings, beside->seed, beside->level + BESIDE, &status);
+    if (!cache) {
         return status;
     }
     cache->companion    = *companion;

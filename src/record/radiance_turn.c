@@ -329,10 +329,10 @@ static assay_status analytically(const assay_radiance_turn *t, desk *d, double b
     for (int channel = 0; channel < CHANNELS && !status; channel++, rows += t->count) {
         memcpy(d->in, rows, t->count * sizeof *rows);
         for (size_t i = 0; i < t->count; i++) {
-            const size_t  first = (size_t)(t->l[i] * t->l[i]);
-            const double *row   = d->matrix + i * t->count;
-            double        sum   = 0.0;
-            for (size_t j = first; j < first + 2 * (size_t)t->l[i] + 1; j++) {
+            const size_t  l = (size_t)t->l[i], first = l * l;
+            const double *row = d->matrix + i * t->count;
+            double        sum = 0.0;
+            for (size_t j = first; j < first + 2 * l + 1; j++) {
                 sum += row[j] * d->in[j];
             }
             rows[i] = sum;

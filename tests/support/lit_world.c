@@ -78,9 +78,9 @@ assay_cache_point *lit_floor(double bend)
     assay_cache_point *points = malloc(LIT_FLOOR_POINTS * sizeof *points);
     assert_non_null(points);
     for (int i = 0; i < LIT_FLOOR_POINTS; i++) {
-        const double x = 2.0 * (i % LIT_FLOOR_SIDE) / LIT_FLOOR_SIDE - 1.0;
-        const double z = 2.0 * (i / LIT_FLOOR_SIDE) / LIT_FLOOR_SIDE - 1.0;
-        points[i]      = lit_point(vec3(x, bend * 0.1 * x * x, z), vec3(bend * -0.2 * x, 1.0, 0.0));
+        const int    column = i % LIT_FLOOR_SIDE, row = i / LIT_FLOOR_SIDE;
+        const double x = 2.0 * column / LIT_FLOOR_SIDE - 1.0, z = 2.0 * row / LIT_FLOOR_SIDE - 1.0;
+        points[i] = lit_point(vec3(x, bend * 0.1 * x * x, z), vec3(bend * -0.2 * x, 1.0, 0.0));
     }
     return points;
 }
