@@ -42,12 +42,13 @@ typedef struct {
     const assay_cached_light          *light;
     assay_film                        *film;
     assay_ray_counts                  *worker_counts;
-    wave_point                        *points;      /* WAVE */
-    assay_cached_point                *asked;       /* WAVE */
-    uint32_t                          *limits;      /* WAVE */
-    size_t                             count;       /* of this wave */
-    int                                sample;      /* or CENTRE    */
-    uint64_t                           done, total; /* points, of the filling  */
+    wave_point                        *points; /* WAVE */
+    assay_cached_point                *asked;  /* WAVE */
+    uint32_t                          *limits; /* WAVE */
+    size_t                             count;  /* of this wave */
+    int                                sample; /* or CENTRE    */
+    const char                        *phase;
+    uint64_t                           done, total; /* points, of the phase    */
 } image_job;
 
 /* ---- the order ---- */
@@ -268,89 +269,75 @@ static assay_status evaluate(void *user, uint64_t chunk, int worker)
 
 /* ---- sweeps ---- */
 
-static assay_status serve_wave(image_job *job, bool fills, bool evaluates, uint64_t chunk_before,
-                               uint64_t chunk_total)
+static assay_status serve_wave(image_job *job, bool evaluates)
 {
     assay_context *context = job->frame->context;
     const uint64_t chunks  = (job->count + CHUNK - 1) / CHUNK;
     assay_status   status  = assay_parallel_for(context, NULL, chunks, look, job);
-    for (size_t i = 0; i < job->count; i++) {
+    if (status == ASSAY_OK && job->settings->path.bounces >= 2) {
+        status = job->light->fill(job->light->user, job->phase, job->done, job->total, job->count,
+                                  job->asked, job->limits);
+    }
+    for (size_t i = 0; i < job->count && job->settings->passes > 1; i++) {
         job->limits[i] = UINT32_MAX;
     }
-    if (status == ASSAY_OK && fills && job->settings->path.bounces >= 2) {
-        status = job->light->fill(job->light->user, job->done, job->total, job->count, job->asked,
-                                  job->limits);
-    }
-    job->done += job->count;
-    if (status == ASSAY_OK && fills) {
-        status = assay_progress(context, "records", job->done, job->total);
-    }
     if (status == ASSAY_OK && evaluates) {
-        status = assay_parallel_part(context, fills ? NULL : "render", chunk_before, chunk_total,
-                                     chunks, evaluate, job);
+        status = assay_parallel_for(context, NULL, chunks, evaluate, job);
         if (status == ASSAY_ERR_MEMORY) {
             return assay_fail_memory(context, "a look into the cache");
         }
     }
-    return status;
-}
-
-static uint64_t pixels_of(const image_job *job)
-{
-    return (uint64_t)job->frame->width * (uint64_t)job->frame->height;
+    job->done += job->count;
+    return status == ASSAY_OK ? assay_progress(context, job->phase, job->done, job->total) : status;
 }
 
 /* One sample of every pixel, or the centres. */
-static assay_status sweep(image_job *job, int sample, bool fills, bool evaluates)
+static assay_status sweep(image_job *job, int sample, bool evaluates)
 {
     const assay_pixel_order order  = sample == CENTRE ? job->settings->order : ASSAY_ORDER_SCANLINE;
     pixel_walk              walk   = walk_start(job->frame->width, job->frame->height, order);
     assay_status            status = ASSAY_OK;
-    uint64_t                seen   = 0;
-    /* Progress of evaluating alone goes by chunks of full waves. */
-    const uint64_t chunks = (pixels_of(job) + CHUNK - 1) / CHUNK;
-    const uint64_t before = (uint64_t)(sample + 1) * chunks;
-    const uint64_t total  = ((uint64_t)job->settings->spp + 1) * chunks;
-    bool           more   = true;
-    job->sample           = sample;
+    bool                    more   = true;
+    job->sample                    = sample;
     while (more && status == ASSAY_OK) {
         job->count = 0;
         while (job->count < WAVE && (more = walk_next(&walk, &job->points[job->count].pixel))) {
             job->count++;
         }
         if (job->count > 0) {
-            status = serve_wave(job, fills, evaluates, before + seen / CHUNK, total);
+            status = serve_wave(job, evaluates);
         }
-        seen += job->count;
     }
     return status;
-}
-
-static bool wants_samples(const image_job *job)
-{
-    return (job->frame->layers & (ASSAY_LAYERS_COLOR | ASSAY_LAYERS_SPLIT)) != 0;
 }
 
 /* The centres come first whatever layers are asked for, so that these change no record. */
-static assay_status sweep_all(image_job *job, bool fills, bool evaluates)
+static assay_status sweep_all(image_job *job, const char *phase, int samples, bool evaluates)
 {
-    assay_status status  = sweep(job, CENTRE, fills, evaluates);
-    const int    samples = (int)job->settings->spp;
-    for (int s = 0; s < samples && status == ASSAY_OK && wants_samples(job); s++) {
-        status = sweep(job, s, fills, evaluates);
+    const uint64_t pixels = (uint64_t)job->frame->width * (uint64_t)job->frame->height;
+    job->phase            = phase;
+    job->done             = 0;
+    job->total            = ((uint64_t)samples + 1) * pixels;
+    assay_status status   = sweep(job, CENTRE, evaluates);
+    for (int s = 0; s < samples && status == ASSAY_OK; s++) {
+        status = sweep(job, s, evaluates);
     }
     return status;
 }
 
+/* Of two passes the first looks at the centres and at one sample.  What it leaves uncovered are
+ * slivers between them; they are filled where the second finds them. */
 static assay_status run(image_job *job)
 {
-    const uint64_t sweeps = wants_samples(job) ? (uint64_t)job->settings->spp + 1 : 1;
-    job->total            = sweeps * pixels_of(job);
-    if (job->settings->passes == 1) {
-        return sweep_all(job, true, true);
+    const bool wanted  = (job->frame->layers & (ASSAY_LAYERS_COLOR | ASSAY_LAYERS_SPLIT)) != 0;
+    const int  samples = wanted ? (int)job->settings->spp : 0;
+    if (job->settings->passes > 1 && job->settings->path.bounces >= 2) {
+        const assay_status status = sweep_all(job, "records", samples ? 1 : 0, false);
+        if (status != ASSAY_OK) {
+            return status;
+        }
     }
-    const assay_status status = sweep_all(job, true, false);
-    return status == ASSAY_OK ? sweep_all(job, false, true) : status;
+    return sweep_all(job, "render", samples, true);
 }
 
 static bool allocate(image_job *job)

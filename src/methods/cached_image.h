@@ -25,9 +25,9 @@ typedef struct {
 typedef struct {
     void *user;
     /* Makes the caches know enough at the points, in their order; limits_out: what had been made
-     * when each was served. */
-    assay_status (*fill)(void *user, uint64_t before, uint64_t total, size_t count,
-                         const assay_cached_point *points, uint32_t *limits_out);
+     * when each was served.  phase, before, total: for the progress. */
+    assay_status (*fill)(void *user, const char *phase, uint64_t before, uint64_t total,
+                         size_t count, const assay_cached_point *points, uint32_t *limits_out);
     /* Indirect radiance towards the point's wo, from what had been made within the limit. */
     assay_status (*radiance)(void *user, const assay_cached_point *point, uint32_t limit,
                              assay_random *random, assay_ray_counts *counts, int worker,

@@ -78,7 +78,7 @@ static void check_mean(const char *what, const assay_image *image, const assay_i
 static void check_scene(const char *what, const char *material, const setting *cache_more,
                         const setting *path_more)
 {
-    assay_context *context = measure_context(2);
+    assay_context *context = measure_context(1);
     assay_scene   *scene   = room(context, material);
     assay_image   *image   = render(scene, CACHE, cache_more, NULL);
     assay_image   *truth   = render(scene, PATH, path_more, NULL);
@@ -174,7 +174,7 @@ static double difference(const assay_image *a, const assay_image *b, const char 
 static void passes_and_traversal(void **state)
 {
     (void)state;
-    assay_context *context  = measure_context(2);
+    assay_context *context  = measure_context(1);
     assay_scene   *scene    = room(context, NULL);
     const setting  few[]    = {{"spp", "1"}, {"a", "0.4"}, {NULL, NULL}};
     const setting  once[]   = {{"spp", "1"}, {"a", "0.4"}, {"passes", "1"}, {NULL, NULL}};

@@ -36,7 +36,7 @@ static assay_status fill(assay_irradiance_cache *cache, size_t count,
 static void records_are_lambert_s_formula(void **state)
 {
     (void)state;
-    lit_world                       w        = lit_world_wall(2);
+    lit_world                       w        = lit_world_wall(1);
     assay_irradiance_cache_settings settings = lit_settings(64, 201);
     settings.rules.a                         = 1e-3; /* every point makes a record */
     assay_irradiance_cache *cache            = make_cache(&w, &settings);
@@ -92,7 +92,7 @@ static void interpolation_converges(void **state)
 {
     (void)state;
     static const double a[3]   = {0.4, 0.2, 0.1};
-    lit_world           w      = lit_world_wall(2);
+    lit_world           w      = lit_world_wall(1);
     assay_cache_point  *points = lit_floor(1.0);
     double              last   = INFINITY;
     for (int i = 0; i < 3; i++) {
@@ -126,7 +126,7 @@ static void furnace(void **state)
 {
     (void)state;
     for (int secondary = ASSAY_SECONDARY_PATH; secondary <= ASSAY_SECONDARY_CACHE; secondary++) {
-        lit_world                       w        = lit_world_furnace(2);
+        lit_world                       w        = lit_world_furnace(1);
         assay_irradiance_cache_settings settings = lit_settings(8, 25);
         assay_cache_point               points[5];
         settings.secondary            = (assay_secondary)secondary;
@@ -217,7 +217,7 @@ static assay_irradiance_cache *filled(const lit_world                       *w,
 static void radii_keep_their_limits(void **state)
 {
     (void)state;
-    lit_world w = lit_world_wall(2);
+    lit_world w = lit_world_wall(1);
     for (int k = 0; k < 4; k++) {
         assay_irradiance_cache_settings settings = lit_settings(4, 12);
         double                          least = 0.0, most = INFINITY;
@@ -259,7 +259,7 @@ static double steepest(assay_irradiance_cache *cache)
 static void neighbours_are_clamped(void **state)
 {
     (void)state;
-    lit_world                       w        = lit_world_furnace(2);
+    lit_world                       w        = lit_world_furnace(1);
     assay_irradiance_cache_settings settings = lit_settings(3, 6);
     settings.layout.jitter                   = true; /* few random rays: radii jump */
     settings.rules.a                         = 0.1;
@@ -278,7 +278,7 @@ static void neighbours_are_clamped(void **state)
 static void records_are_limited(void **state)
 {
     (void)state;
-    lit_world                       w        = lit_world_wall(2);
+    lit_world                       w        = lit_world_wall(1);
     assay_irradiance_cache_settings settings = lit_settings(4, 12);
     settings.max_records                     = 3;
     assay_irradiance_cache *cache            = filled(&w, &settings);
@@ -297,7 +297,7 @@ static void records_are_limited(void **state)
 static void tabellion_radius(void **state)
 {
     (void)state;
-    lit_world                       w        = lit_world_wall(2);
+    lit_world                       w        = lit_world_wall(1);
     assay_irradiance_cache_settings settings = lit_settings(16, 50);
     settings.rules.weight                    = ASSAY_WEIGHT_TABELLION;
     settings.rules.a                         = 1.0;

@@ -89,8 +89,8 @@ static assay_rgb lambert_of(const assay_cached_point *point)
     return assay_bsdf_view_lambert(&view);
 }
 
-static assay_status fill(void *user, uint64_t before, uint64_t total, size_t count,
-                         const assay_cached_point *points, uint32_t *limits_out)
+static assay_status fill(void *user, const char *phase, uint64_t before, uint64_t total,
+                         size_t count, const assay_cached_point *points, uint32_t *limits_out)
 {
     cache_state *s     = user;
     void        *grown = s->points;
@@ -107,7 +107,7 @@ static assay_status fill(void *user, uint64_t before, uint64_t total, size_t cou
                                                          !rgb_is_black(lambert_of(&points[i]))};
         }
     }
-    return assay_irradiance_cache_fill(s->cache, "records", before, total, count, s->points,
+    return assay_irradiance_cache_fill(s->cache, phase, before, total, count, s->points,
                                        limits_out);
 }
 

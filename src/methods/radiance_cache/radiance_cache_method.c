@@ -23,7 +23,7 @@ static const assay_param_desc PARAMS[] = {
     {"coefficient_gradient", ASSAY_PARAM_CHOICE, "", "walls", 0, 0, "none|points|walls",
      "Translational gradients of the coefficients: none, of points that keep their radiance, or of "
      "walls that move before one another.",
-     "[krivanek05a], [krivanek05b]"},
+     "[krivanek05], [krivanek05b]"},
     {"rotation", ASSAY_PARAM_CHOICE, "", "table", 0, 0, "exact|table|conversion|digon|analytical",
      "How coefficients pass into the frame of another normal.", "[gautron06] 3.4"},
     {"rotation_steps", ASSAY_PARAM_INT, "", "16", 1, 1024, NULL,
@@ -205,8 +205,8 @@ static assay_status make_room(cache_state *s, size_t count)
     return status ? assay_fail_memory(s->context, "visible points") : ASSAY_OK;
 }
 
-static assay_status fill(void *user, uint64_t before, uint64_t total, size_t count,
-                         const assay_cached_point *points, uint32_t *limits_out)
+static assay_status fill(void *user, const char *phase, uint64_t before, uint64_t total,
+                         size_t count, const assay_cached_point *points, uint32_t *limits_out)
 {
     cache_state *s      = user;
     assay_status status = make_room(s, count);
@@ -220,7 +220,7 @@ static assay_status fill(void *user, uint64_t before, uint64_t total, size_t cou
         }
     }
     status = status ? status
-                    : assay_irradiance_cache_fill(s->irradiance, "records", before, total, count,
+                    : assay_irradiance_cache_fill(s->irradiance, phase, before, total, count,
                                                   s->points, limits_out);
     if (status != ASSAY_OK || !s->radiance) {
         return status;
@@ -228,8 +228,8 @@ static assay_status fill(void *user, uint64_t before, uint64_t total, size_t cou
     for (size_t i = 0; i < count; i++) {
         s->points[i].wanted = grids_at(s, &points[i]) != NULL;
     }
-    status = assay_irradiance_cache_fill(assay_radiance_cache_records(s->radiance), "records",
-                                         before, total, count, s->points, s->limits);
+    status = assay_irradiance_cache_fill(assay_radiance_cache_records(s->radiance), phase, before,
+                                         total, count, s->points, s->limits);
     for (size_t i = 0; i < count && status == ASSAY_OK; i++) {
         s->made[i] = (made_so_far){limits_out[i], s->limits[i]};
         limits_out[i] += s->limits[i];
