@@ -376,8 +376,9 @@ static void passes(void **state)
     (void)state;
     assay_context *context = measure_context(1);
     assay_scene   *scene   = room(context, GGX);
-    const setting  once[]  = {{"passes", "1"}, {NULL, NULL}};
-    assay_image   *two     = render(scene, QUICK, NULL);
+    const setting  once[]  = {{"passes", "1"}, {"a", "0.1"}, {NULL, NULL}};
+    const setting  twice[] = {{"passes", "2"}, {"a", "0.1"}, {NULL, NULL}};
+    assay_image   *two     = render(scene, QUICK, twice);
     assay_image   *one     = render(scene, QUICK, once);
     assert_true(difference(one, two, "Indirect.G") > 0.0);
     assert_true(difference(one, two, "Direct.G") == 0.0);
