@@ -174,6 +174,7 @@ static assay_status look(void *user, uint64_t chunk, int worker)
             look_through_sample(job, x, y, point, worker);
         }
         point->point.centre = job->sample == CENTRE;
+        point->point.pixel  = point->pixel;
         if (point->point.hit) {
             point->point.footprint = footprint_at(job->frame, point->point.vertex.surface.position);
         }

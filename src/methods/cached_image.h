@@ -20,6 +20,7 @@ typedef struct {
     bool         centre; /* of a pixel: irradiance is asked here, whatever the surface          */
     assay_vertex vertex; /* dressed                              */
     double       footprint; /* m: size of a pixel there             */
+    uint64_t     pixel;     /* row by row                           */
 } assay_cached_point;
 
 typedef struct {

@@ -5,6 +5,7 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/numerics.h"
+#include "methods/cache_debug.h"
 #include "methods/cache_file.h"
 #include "methods/cache_params.h"
 
@@ -14,6 +15,12 @@ static const assay_param_desc PARAMS[] = {
      "Folder of a saved cache to begin with, of the same scene and the same light.", ""},
     {"cache_out", ASSAY_PARAM_PATH, "", "", 0, 0, NULL,
      "Folder to make for the cache when the image is done.", ""},
+    {"debug", ASSAY_PARAM_CHOICE, "", "off", 0, 0, "off|records|weights|error",
+     "A picture instead of the colour: records and their zones, weights, or the error of the "
+     "indirect irradiance.",
+     "[gautron06] fig. 2.3"},
+    {"reference", ASSAY_PARAM_PATH, "", "", 0, 0, NULL,
+     "Image with the layer IrradianceIndirect that debug=error compares with.", ""},
     {0},
 };
 
@@ -22,7 +29,9 @@ typedef struct {
     const assay_world              *world;
     assay_irradiance_cache_settings settings;
     assay_cached_image_settings     image;
-    char                           *cache_in, *cache_out; /* or NULL */
+    char                           *cache_in, *cache_out, *reference; /* or NULL */
+    assay_cache_debug_kind          debug_kind;
+    assay_cache_debug               debug;
     assay_irradiance_cache         *cache;
     assay_cache_point              *points; /* of a wave */
     size_t                          capacity;
@@ -35,6 +44,8 @@ static void destroy(void *state)
         assay_irradiance_cache_destroy(s->cache);
         assay_release(s->context, s->cache_in);
         assay_release(s->context, s->cache_out);
+        assay_release(s->context, s->reference);
+        assay_cache_debug_close(&s->debug);
         assay_release(s->context, s->points);
         assay_release(s->context, s);
     }
@@ -62,6 +73,8 @@ static assay_status create(assay_context *context, const assay_params *params, v
     assay_status status = assay_cache_params_read(context, params, &state->settings, &state->image);
     status = status ? status : copy_path(context, params, "cache_in", &state->cache_in);
     status = status ? status : copy_path(context, params, "cache_out", &state->cache_out);
+    status = status ? status : copy_path(context, params, "reference", &state->reference);
+    state->debug_kind = (assay_cache_debug_kind)assay_params_choice(params, "debug");
     if (status != ASSAY_OK) {
         destroy(state);
         return status;
@@ -72,10 +85,12 @@ static assay_status create(assay_context *context, const assay_params *params, v
 
 static assay_status prepare(void *state, const assay_frame *frame)
 {
-    cache_state *s = state;
-    s->world       = frame->world;
-    const assay_status status =
-        assay_irradiance_cache_create(frame->world, &s->settings, frame->seed, &s->cache);
+    cache_state *s      = state;
+    s->world            = frame->world;
+    assay_status status = assay_cache_debug_open(frame, s->debug_kind, s->reference, &s->debug);
+    status =
+        status ? status
+               : assay_irradiance_cache_create(frame->world, &s->settings, frame->seed, &s->cache);
     return status || !s->cache_in
                ? status
                : assay_cache_file_read(frame, &s->settings, s->cache_in, s->cache);
@@ -142,6 +157,13 @@ static assay_status radiance(void *user, const assay_cached_point *point, uint32
     return ASSAY_OK;
 }
 
+static assay_status picture(void *user, const assay_cached_point *point, uint32_t limit, int worker,
+                            assay_rgb color, assay_rgb *picture_out)
+{
+    const cache_state *s = user;
+    return assay_cache_debug_paint(&s->debug, s->cache, point, limit, worker, color, picture_out);
+}
+
 static void report(const cache_state *s)
 {
     const uint64_t unserved = assay_irradiance_cache_unserved(s->cache);
@@ -157,7 +179,12 @@ static assay_status render_image(cache_state *s, const assay_frame *frame, assay
                                  assay_ray_counts *counts)
 {
     const assay_cached_light light = {
-        .user = s, .fill = fill, .radiance = radiance, .irradiance = irradiance};
+        .user       = s,
+        .fill       = fill,
+        .radiance   = radiance,
+        .irradiance = irradiance,
+        .picture    = s->debug_kind == ASSAY_CACHE_DEBUG_OFF ? NULL : picture,
+    };
     assay_status status = assay_cached_image_render(frame, &s->image, &light, film, counts);
     assay_irradiance_cache_count(s->cache, counts);
     if (status == ASSAY_OK) {
