@@ -9,6 +9,7 @@
 #include "core/alloc.h"
 #include "core/numerics.h"
 #include "core/parallel.h"
+#include "record/neighbour_clamp.h"
 
 /* Points that are looked at together.  Part of the result only with neighbour clamping, where
  * records shrink while a wave is served. */
@@ -341,35 +342,6 @@ static void to_world(const assay_frame3 *frame, assay_vec3 gradient[3])
     }
 }
 
-typedef struct {
-    assay_irradiance_cache *cache;
-    const assay_record     *record;
-    double                  radius; /* of the new record, so far */
-} neighbourhood;
-
-static double distance_to(const neighbourhood *n, uint32_t number)
-{
-    const assay_record *other = assay_record_store_at(n->cache->store, number);
-    return vec3_length(vec3_sub(other->position, n->record->position));
-}
-
-static void clamp_to_neighbour(void *user, uint32_t number)
-{
-    neighbourhood *n = user;
-    const double   bound =
-        assay_record_store_at(n->cache->store, number)->radius + distance_to(n, number);
-    n->radius = bound < n->radius ? bound : n->radius;
-}
-
-static void clamp_neighbour(void *user, uint32_t number)
-{
-    const neighbourhood *n     = user;
-    const double         bound = n->radius + distance_to(n, number);
-    if (bound < assay_record_store_at(n->cache->store, number)->radius) {
-        assay_record_store_shrink(n->cache->store, number, bound);
-    }
-}
-
 /* R_k from what was seen: limits of the settings last, the lower one strongest. */
 static assay_status find_radius(assay_irradiance_cache *cache, const assay_cache_point *point,
                                 assay_record *record)
@@ -380,13 +352,11 @@ static assay_status find_radius(assay_irradiance_cache *cache, const assay_cache
     /* Where nothing is seen the light changes nowhere, as far as one can tell. */
     radius = radius < cache->diagonal ? radius : cache->diagonal;
     if (s->neighbour_clamp) {
-        neighbourhood      n = {cache, record, radius};
         const assay_status status =
-            assay_record_store_near(cache->store, record->position, radius, clamp_to_neighbour, &n);
+            assay_neighbour_clamp_record(cache->store, record->position, &radius);
         if (status != ASSAY_OK) {
             return status;
         }
-        radius = n.radius;
     }
     double least = s->r_min, most = s->r_max;
     if (point->footprint > 0.0) {
@@ -419,9 +389,7 @@ static assay_status make_record(assay_irradiance_cache *cache, const assay_cache
     to_world(&site->frame, record.translation);
     status = find_radius(cache, point, &record);
     if (status == ASSAY_OK && s->neighbour_clamp) {
-        neighbourhood n = {cache, &record, record.radius};
-        status          = assay_record_store_near(cache->store, record.position, cache->diagonal,
-                                                  clamp_neighbour, &n);
+        status = assay_neighbour_clamp_others(cache->store, &record, cache->diagonal);
     }
     if (status == ASSAY_OK && cache->companion.keep) {
         status = cache->companion.keep(cache->companion.user,

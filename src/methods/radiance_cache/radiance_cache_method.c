@@ -6,12 +6,16 @@
  * both parts always add up to f, whatever the Lambertian is. */
 #include "methods/radiance_cache/radiance_cache_method.h"
 
+#include <string.h>
+
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/numerics.h"
+#include "methods/cache_file.h"
 #include "methods/cache_params.h"
 #include "methods/radiance_cache/glossy_materials.h"
 #include "record/radiance_cache.h"
+#include "record/record_bundle.h"
 
 enum { MOST_ORDER = 20 };
 
@@ -342,13 +346,47 @@ static void report(const cache_state *s)
     }
 }
 
+/* The coefficients of all records, a row each: 3 n^2. */
+static assay_status dump_coefficients(const cache_state *s, assay_bundle *bundle)
+{
+    assay_irradiance_cache *records = assay_radiance_cache_records(s->radiance);
+    const uint32_t          rows  = assay_record_store_count(assay_irradiance_cache_store(records));
+    const size_t            size  = 3 * assay_basis_count(assay_radiance_cache_basis(s->radiance));
+    assay_array            *table = NULL;
+    if (rows == 0) {
+        return ASSAY_OK;
+    }
+    assay_status status = assay_array_create(s->context, rows, size, &table);
+    for (uint32_t i = 0; i < rows && status == ASSAY_OK; i++) {
+        memcpy(assay_array_data(table) + i * size,
+               assay_radiance_cache_coefficients(s->radiance, i), size * sizeof(double));
+    }
+    status = status ? status
+                    : assay_bundle_add_table(bundle, "radiance_records/coefficients", "W/(m2 sr)",
+                                             table);
+    assay_array_destroy(table);
+    return status;
+}
+
+static assay_status dump(const cache_state *s, assay_bundle *bundle)
+{
+    assay_status status = assay_cache_file_add(s->context, bundle, s->irradiance);
+    if (status != ASSAY_OK || !s->radiance) {
+        return status;
+    }
+    status = assay_record_bundle_add(
+        s->context, bundle, "radiance_records",
+        assay_irradiance_cache_store(assay_radiance_cache_records(s->radiance)));
+    return status ? status : dump_coefficients(s, bundle);
+}
+
 static assay_status render(void *state, const assay_frame *frame, assay_film *film,
                            assay_ray_counts *counts)
 {
     cache_state             *s     = state;
     const assay_cached_light light = {
         .user = s, .fill = fill, .radiance = radiance, .irradiance = irradiance};
-    const assay_status status = assay_cached_image_render(frame, &s->image, &light, film, counts);
+    assay_status status = assay_cached_image_render(frame, &s->image, &light, film, counts);
     assay_irradiance_cache_count(s->irradiance, counts);
     if (s->radiance) {
         assay_irradiance_cache_count(assay_radiance_cache_records(s->radiance), counts);
@@ -356,7 +394,7 @@ static assay_status render(void *state, const assay_frame *frame, assay_film *fi
     if (status == ASSAY_OK) {
         report(s);
     }
-    return status;
+    return status == ASSAY_OK && frame->dump ? dump(s, frame->dump) : status;
 }
 
 const assay_method assay_method_radiance_cache = {
