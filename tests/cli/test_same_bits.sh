@@ -6,7 +6,7 @@ assay=${ASSAY_BIN:-build/release/assay}
 folder=$(mktemp -d) || exit 1
 trap 'rm -rf "$folder"' EXIT
 number=0
-scenes="cornell-box cornell-box-glossy spheres textured"
+scenes="cornell-box cornell-box-glossy spheres textured cached"
 
 result() { # STATUS NAME
     number=$((number + 1))
@@ -54,6 +54,8 @@ render() { # PROGRAM SCENE OUT OPTIONS...
     case $scene in
     textured) set -- "$folder/textured.gltf" --env "$folder/sky.exr" --env-scale 1.5 \
         --env-rotation-deg 40 --time 0.5 "$@" ;;
+    cached) set -- scenes/spheres/spheres.gltf --method radiance-cache -p a=0.3 -p order=5 -p grid=6 \
+        -p nodes=12 -p theta_strata=4 -p phi_strata=10 -p glossy_accuracy=0.8 "$@" ;;
     *) set -- "scenes/$scene/$scene.gltf" "$@" ;;
     esac
     "$program" render --size 24x24 --spp 3 --seed 5 -q -o "$out" "$@"
