@@ -12,7 +12,8 @@
 #include "trace/camera_ray.h"
 #include "trace/visible_point.h"
 
-enum { WAVE = 4096, CHUNK = 16, CENTRE = -1 };
+/* A single pass takes short waves: records of a wave's centres are there for all of its samples. */
+enum { WAVE = 4096, SHORT_WAVE = 32, CHUNK = 16, CENTRE = -1 };
 
 /* Scrambles of a pixel. */
 enum { PURPOSE_RADIANCE, PURPOSE_IRRADIANCE };
@@ -292,53 +293,74 @@ static assay_status serve_wave(image_job *job, bool evaluates)
     return status == ASSAY_OK ? assay_progress(context, job->phase, job->done, job->total) : status;
 }
 
+/* The walk's next pixels; false at the end. */
+static bool take_wave(image_job *job, pixel_walk *walk)
+{
+    const size_t most = job->settings->passes == 1 ? SHORT_WAVE : WAVE;
+    job->count        = 0;
+    while (job->count < most && walk_next(walk, &job->points[job->count].pixel)) {
+        job->count++;
+    }
+    return job->count > 0;
+}
+
 /* One sample of every pixel, or the centres. */
 static assay_status sweep(image_job *job, int sample, bool evaluates)
 {
     const assay_pixel_order order  = sample == CENTRE ? job->settings->order : ASSAY_ORDER_SCANLINE;
     pixel_walk              walk   = walk_start(job->frame->width, job->frame->height, order);
     assay_status            status = ASSAY_OK;
-    bool                    more   = true;
     job->sample                    = sample;
-    while (more && status == ASSAY_OK) {
-        job->count = 0;
-        while (job->count < WAVE && (more = walk_next(&walk, &job->points[job->count].pixel))) {
-            job->count++;
-        }
-        if (job->count > 0) {
-            status = serve_wave(job, evaluates);
-        }
+    while (status == ASSAY_OK && take_wave(job, &walk)) {
+        status = serve_wave(job, evaluates);
     }
     return status;
 }
 
-/* The centres come first whatever layers are asked for, so that these change no record. */
-static assay_status sweep_all(image_job *job, const char *phase, int samples, bool evaluates)
+static void begin(image_job *job, const char *phase, int samples)
 {
-    const uint64_t pixels = (uint64_t)job->frame->width * (uint64_t)job->frame->height;
-    job->phase            = phase;
-    job->done             = 0;
-    job->total            = ((uint64_t)samples + 1) * pixels;
-    assay_status status   = sweep(job, CENTRE, evaluates);
-    for (int s = 0; s < samples && status == ASSAY_OK; s++) {
-        status = sweep(job, s, evaluates);
-    }
-    return status;
+    job->phase = phase;
+    job->done  = 0;
+    job->total =
+        ((uint64_t)samples + 1) * (uint64_t)job->frame->width * (uint64_t)job->frame->height;
 }
 
 /* Of two passes the first looks at the centres and at one sample.  What it leaves uncovered are
- * slivers between them; they are filled where the second finds them. */
+ * slivers between them; they are filled where the second finds them.  The centres come first
+ * whatever layers are asked for, so that these change no record. */
+static assay_status run_two_passes(image_job *job, int samples)
+{
+    const bool   fills  = job->settings->path.bounces >= 2;
+    assay_status status = ASSAY_OK;
+    begin(job, "records", samples ? 1 : 0);
+    status = fills ? sweep(job, CENTRE, false) : ASSAY_OK;
+    status = status || !fills || !samples ? status : sweep(job, 0, false);
+    begin(job, "render", samples);
+    for (int s = CENTRE; s < samples && status == ASSAY_OK; s++) {
+        status = sweep(job, s, true);
+    }
+    return status;
+}
+
+/* Of one pass each pixel is finished with the records that were there when its turn came. */
+static assay_status run_one_pass(image_job *job, int samples)
+{
+    pixel_walk   walk   = walk_start(job->frame->width, job->frame->height, job->settings->order);
+    assay_status status = ASSAY_OK;
+    begin(job, "render", samples);
+    while (status == ASSAY_OK && take_wave(job, &walk)) {
+        for (job->sample = CENTRE; job->sample < samples && status == ASSAY_OK; job->sample++) {
+            status = serve_wave(job, true);
+        }
+    }
+    return status;
+}
+
 static assay_status run(image_job *job)
 {
     const bool wanted  = (job->frame->layers & (ASSAY_LAYERS_COLOR | ASSAY_LAYERS_SPLIT)) != 0;
     const int  samples = wanted ? (int)job->settings->spp : 0;
-    if (job->settings->passes > 1 && job->settings->path.bounces >= 2) {
-        const assay_status status = sweep_all(job, "records", samples ? 1 : 0, false);
-        if (status != ASSAY_OK) {
-            return status;
-        }
-    }
-    return sweep_all(job, "render", samples, true);
+    return job->settings->passes == 1 ? run_one_pass(job, samples) : run_two_passes(job, samples);
 }
 
 static bool allocate(image_job *job)
