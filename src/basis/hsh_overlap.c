@@ -45,6 +45,12 @@ typedef struct {
     size_t       filled;
 } overlap;
 
+struct assay_hsh_turn_scratch {
+    assay_context     *context;
+    const assay_basis *hsh;
+    overlap            work;
+};
+
 double assay_hsh_mirror_sign(const assay_basis *hsh, size_t i)
 {
     int l = 0, m = 0;
@@ -215,6 +221,12 @@ static double sinh_of(double s)
     return 0.5 * (e + e / (1.0 + e));
 }
 
+/* Without a turn the second root is the first, and any scale undoes it. */
+static double scale_for(double turn, double width)
+{
+    return turn == 0.0 ? width : fmax(turn, SMALLEST_TURN);
+}
+
 static assay_status integrate(const assay_basis *hsh, double turn, double scale, overlap *o)
 {
     assay_status status = ASSAY_OK;
@@ -247,32 +259,104 @@ static void gather(const parity_block *block, size_t count, double *matrix_out)
     }
 }
 
+/* o holds at least as many nodes as are wanted. */
+static assay_status overlap_with(const assay_basis *hsh, overlap *o, double turn, double width,
+                                 double *matrix_out)
+{
+    const size_t count = assay_basis_count(hsh);
+    memset(matrix_out, 0, count * count * sizeof *matrix_out);
+    if (!(width > 0.0)) {
+        return ASSAY_OK;
+    }
+    const double scale = scale_for(turn, width);
+    const double range = asinh_of(sqrt(width / scale));
+    const int    order = assay_basis_order(hsh);
+    o->d_nodes         = place_d_nodes(order, range, o->node[0], o->node[1]);
+    memset(o->even.sum, 0, o->even.count * o->even.count * sizeof(double));
+    memset(o->odd.sum, 0, o->odd.count * o->odd.count * sizeof(double));
+    const assay_status status = integrate(hsh, turn, scale, o);
+    if (status == ASSAY_OK) {
+        gather(&o->even, count, matrix_out);
+        gather(&o->odd, count, matrix_out);
+    }
+    return status;
+}
+
+static assay_status open_overlap(assay_context *context, const assay_basis *hsh, double range,
+                                 overlap *o)
+{
+    const int          order = assay_basis_order(hsh);
+    const assay_status status =
+        allocate(context, hsh, place_d_nodes(order, range, NULL, NULL), psi_nodes_for(order), o);
+    if (status == ASSAY_OK) {
+        assay_gauss_legendre(o->psi_nodes, o->psi_node[0], o->psi_node[1]);
+    }
+    return status;
+}
+
 assay_status assay_hsh_overlap(const assay_basis *hsh, assay_context *context, double turn,
                                double width, double *matrix_out)
 {
-    const size_t count = assay_basis_count(hsh);
-    if (!(width > 0.0)) {
-        memset(matrix_out, 0, count * count * sizeof *matrix_out);
-        return ASSAY_OK;
-    }
-    /* Without a turn the second root is the first, and any scale undoes it. */
-    const double scale = turn == 0.0 ? width : fmax(turn, SMALLEST_TURN);
-    const double range = asinh_of(sqrt(width / scale));
-    const int    order = assay_basis_order(hsh);
+    const double range = width > 0.0 ? asinh_of(sqrt(width / scale_for(turn, width))) : 0.0;
     overlap      o;
-    assay_status status =
-        allocate(context, hsh, place_d_nodes(order, range, NULL, NULL), psi_nodes_for(order), &o);
-    if (status) {
+    assay_status status = open_overlap(context, hsh, range, &o);
+    if (status == ASSAY_OK) {
+        status = overlap_with(hsh, &o, turn, width, matrix_out);
+        release(context, &o);
+    }
+    return status;
+}
+
+/* ---- without an allocation ---- */
+
+assay_status assay_hsh_turn_scratch_create(assay_context *context, const assay_basis *hsh,
+                                           assay_hsh_turn_scratch **scratch_out)
+{
+    assay_hsh_turn_scratch *scratch = assay_allocate(context, 1, sizeof *scratch);
+    if (!scratch) {
+        return assay_fail_memory(context, "the overlap of hemispherical harmonics");
+    }
+    scratch->context = context;
+    scratch->hsh     = hsh;
+    const assay_status status =
+        open_overlap(context, hsh, asinh_of(sqrt(ASSAY_PI / SMALLEST_TURN)), &scratch->work);
+    if (status != ASSAY_OK) {
+        assay_release(context, scratch);
         return status;
     }
-    place_d_nodes(order, range, o.node[0], o.node[1]);
-    assay_gauss_legendre(o.psi_nodes, o.psi_node[0], o.psi_node[1]);
-    status = integrate(hsh, turn, scale, &o);
-    if (!status) {
-        memset(matrix_out, 0, count * count * sizeof *matrix_out);
-        gather(&o.even, count, matrix_out);
-        gather(&o.odd, count, matrix_out);
+    *scratch_out = scratch;
+    return ASSAY_OK;
+}
+
+void assay_hsh_turn_scratch_destroy(assay_hsh_turn_scratch *scratch)
+{
+    if (scratch) {
+        release(scratch->context, &scratch->work);
+        assay_release(scratch->context, scratch);
     }
-    release(context, &o);
+}
+
+assay_status assay_hsh_turn_exactly(assay_hsh_turn_scratch *scratch, double beta,
+                                    double *matrix_out)
+{
+    const assay_status status =
+        overlap_with(scratch->hsh, &scratch->work, beta, 0.5 * (ASSAY_PI - beta), matrix_out);
+    if (status == ASSAY_OK) {
+        assay_hsh_add_mirrored(scratch->hsh, matrix_out);
+    }
     return status;
+}
+
+void assay_hsh_add_mirrored(const assay_basis *hsh, double *matrix)
+{
+    const size_t n = assay_basis_count(hsh);
+    for (size_t i = 0; i < n; i++) {
+        const double si = assay_hsh_mirror_sign(hsh, i);
+        for (size_t j = 0; j <= i; j++) {
+            const double sign = si * assay_hsh_mirror_sign(hsh, j);
+            const double sum  = matrix[i * n + j] + sign * matrix[j * n + i];
+            matrix[i * n + j] = sum;
+            matrix[j * n + i] = sign * sum;
+        }
+    }
 }

@@ -11,6 +11,19 @@
 assay_status assay_hsh_overlap(const assay_basis *hsh, assay_context *context, double turn,
                                double width, double *matrix_out);
 
+/* The same many times without an allocation: memory of one thread at a time.  hsh must outlive it.
+ * Errors: MEMORY; of the turn none but those of a basis. */
+typedef struct assay_hsh_turn_scratch assay_hsh_turn_scratch;
+assay_status assay_hsh_turn_scratch_create(assay_context *context, const assay_basis *hsh,
+                                           assay_hsh_turn_scratch **scratch_out);
+void         assay_hsh_turn_scratch_destroy(assay_hsh_turn_scratch *scratch);
+/* M_R(beta), eq. 3.31, 0 < beta <= pi: what assay_hsh_rotation_y gives for ASSAY_HSH_EXACT. */
+assay_status assay_hsh_turn_exactly(assay_hsh_turn_scratch *scratch, double beta,
+                                    double *matrix_out);
+
+/* From G over half of the region to M_R over all of it: G + S G' S (hsh_rotation.c), in place. */
+void assay_hsh_add_mirrored(const assay_basis *hsh, double *matrix);
+
 /* +1 or -1: what function i is multiplied by where x becomes -x. */
 double assay_hsh_mirror_sign(const assay_basis *hsh, size_t i);
 

@@ -93,15 +93,7 @@ static assay_status exact(const turner *t, double beta, double *matrix_out)
     if (status) {
         return status;
     }
-    for (size_t i = 0; i < n; i++) {
-        const double si = assay_hsh_mirror_sign(t->hsh, i);
-        for (size_t j = 0; j <= i; j++) {
-            const double sign     = si * assay_hsh_mirror_sign(t->hsh, j);
-            const double sum      = matrix_out[i * n + j] + sign * matrix_out[j * n + i];
-            matrix_out[i * n + j] = sum;
-            matrix_out[j * n + i] = sign * sum;
-        }
-    }
+    assay_hsh_add_mirrored(t->hsh, matrix_out);
     if (beta < 0.0) {
         transpose(n, matrix_out);
     }

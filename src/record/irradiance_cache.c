@@ -9,6 +9,7 @@
 #include "core/alloc.h"
 #include "core/numerics.h"
 #include "core/parallel.h"
+#include "record/neighbour_clamp.h"
 
 /* Points that are looked at together.  Part of the result only with neighbour clamping, where
  * records shrink while a wave is served. */
@@ -16,6 +17,7 @@ enum { WAVE = 4096 };
 
 /* A level's hemispheres are numbered in streams of their own. */
 static const int LEVEL_SHIFT = 56;
+static const int BESIDE      = 64; /* added to the level of a cache beside another one */
 
 /* A worker's own; aligned apart by its size. */
 typedef struct {
@@ -38,7 +40,9 @@ struct assay_irradiance_cache {
     cache_worker                   *workers;
     bool                           *covered; /* WAVE                                */
     assay_irradiance_cache         *next;
-    assay_cache_point              *seen; /* what the cells see                      */
+    bool                            borrows_next; /* it belongs to another cache     */
+    assay_record_companion          companion;    /* keep NULL: none                 */
+    assay_cache_point              *seen;         /* what the cells see                      */
 };
 
 static bool allocate(assay_irradiance_cache *cache)
@@ -71,21 +75,22 @@ static void destroy(assay_irradiance_cache *cache)
 void assay_irradiance_cache_destroy(assay_irradiance_cache *cache)
 {
     while (cache) {
-        assay_irradiance_cache *next = cache->next;
+        assay_irradiance_cache *next = cache->borrows_next ? NULL : cache->next;
         destroy(cache);
         cache = next;
     }
 }
 
-/* One level, without its next. */
-static assay_status create_level(const assay_world                     *world,
-                                 const assay_irradiance_cache_settings *settings, uint64_t seed,
-                                 int level, assay_irradiance_cache **cache_out)
+/* One level, without its next; NULL, and a status, where that fails. */
+static assay_irradiance_cache *create_level(const assay_world                     *world,
+                                            const assay_irradiance_cache_settings *settings,
+                                            uint64_t seed, int level, assay_status *status_out)
 {
     const assay_scene      *scene = world->scene;
     assay_irradiance_cache *cache = assay_allocate(scene->context, 1, sizeof *cache);
     if (!cache) {
-        return assay_fail_memory(scene->context, "the irradiance cache");
+        *status_out = assay_fail_memory(scene->context, "the irradiance cache");
+        return NULL;
     }
     cache->world        = world;
     cache->context      = scene->context;
@@ -107,10 +112,10 @@ static assay_status create_level(const assay_world                     *world,
                               : assay_hemisphere_create(cache->context, &settings->layout, &cache->hemisphere);
     if (status != ASSAY_OK) {
         destroy(cache);
-        return status;
+        *status_out = status;
+        return NULL;
     }
-    *cache_out = cache;
-    return ASSAY_OK;
+    return cache;
 }
 
 /* A level's light is seen through those above, each of which averages over many of its records and
@@ -135,8 +140,9 @@ assay_status assay_irradiance_cache_create(const assay_world                    
     assay_irradiance_cache        **place = &first;
     const int levels = settings->secondary == ASSAY_SECONDARY_CACHE ? settings->levels : 1;
     for (int level = 0; level < levels && (level == 0 || at.path.bounces >= 2); level++) {
-        const assay_status status = create_level(world, &at, seed, level, place);
-        if (status != ASSAY_OK) {
+        assay_status status = ASSAY_OK;
+        *place              = create_level(world, &at, seed, level, &status);
+        if (!*place) {
             assay_irradiance_cache_destroy(first);
             return status;
         }
@@ -145,6 +151,24 @@ assay_status assay_irradiance_cache_create(const assay_world                    
         halve(&at.layout);
     }
     *cache_out = first;
+    return ASSAY_OK;
+}
+
+assay_status assay_irradiance_cache_create_beside(assay_irradiance_cache                *beside,
+                                                  const assay_irradiance_cache_settings *settings,
+                                                  const assay_record_companion          *companion,
+                                                  assay_irradiance_cache               **cache_out)
+{
+    assay_status            status = ASSAY_OK;
+    assay_irradiance_cache *cache =
+        create_level(beside->world, settings, beside->seed, beside->level + BESIDE, &status);
+    if (!cache) {
+        return status;
+    }
+    cache->companion    = *companion;
+    cache->next         = beside->next;
+    cache->borrows_next = true;
+    *cache_out          = cache;
     return ASSAY_OK;
 }
 
@@ -184,22 +208,34 @@ static const assay_record *nearest(const assay_irradiance_cache *cache, assay_ve
     return best;
 }
 
-assay_status assay_irradiance_cache_look_up(assay_irradiance_cache *cache, assay_vec3 position,
-                                            assay_vec3 normal, uint32_t limit, int worker,
-                                            assay_rgb *irradiance_out)
+assay_status assay_irradiance_cache_find(assay_irradiance_cache *cache, assay_vec3 position,
+                                         assay_vec3 normal, uint32_t limit, int worker,
+                                         const assay_contributions **found_out)
 {
     cache_worker      *own = &cache->workers[worker];
     const assay_status status =
         assay_record_store_find(cache->store, position, normal, limit, &own->found);
+    if (status == ASSAY_OK) {
+        own->unserved += own->found.count == 0;
+        *found_out = &own->found;
+    }
+    return status;
+}
+
+assay_status assay_irradiance_cache_look_up(assay_irradiance_cache *cache, assay_vec3 position,
+                                            assay_vec3 normal, uint32_t limit, int worker,
+                                            assay_rgb *irradiance_out)
+{
+    const assay_contributions *found = NULL;
+    const assay_status         status =
+        assay_irradiance_cache_find(cache, position, normal, limit, worker, &found);
     if (status != ASSAY_OK) {
         return status;
     }
-    if (own->found.count > 0) {
-        *irradiance_out =
-            assay_record_store_interpolate(cache->store, &own->found, position, normal);
+    if (found->count > 0) {
+        *irradiance_out = assay_record_store_interpolate(cache->store, found, position, normal);
         return ASSAY_OK;
     }
-    own->unserved++;
     const assay_record *record = nearest(cache, position, normal, limit);
     *irradiance_out            = record ? record->irradiance : rgb_grey(0.0);
     return ASSAY_OK;
@@ -306,35 +342,6 @@ static void to_world(const assay_frame3 *frame, assay_vec3 gradient[3])
     }
 }
 
-typedef struct {
-    assay_irradiance_cache *cache;
-    const assay_record     *record;
-    double                  radius; /* of the new record, so far */
-} neighbourhood;
-
-static double distance_to(const neighbourhood *n, uint32_t number)
-{
-    const assay_record *other = assay_record_store_at(n->cache->store, number);
-    return vec3_length(vec3_sub(other->position, n->record->position));
-}
-
-static void clamp_to_neighbour(void *user, uint32_t number)
-{
-    neighbourhood *n = user;
-    const double   bound =
-        assay_record_store_at(n->cache->store, number)->radius + distance_to(n, number);
-    n->radius = bound < n->radius ? bound : n->radius;
-}
-
-static void clamp_neighbour(void *user, uint32_t number)
-{
-    const neighbourhood *n     = user;
-    const double         bound = n->radius + distance_to(n, number);
-    if (bound < assay_record_store_at(n->cache->store, number)->radius) {
-        assay_record_store_shrink(n->cache->store, number, bound);
-    }
-}
-
 /* R_k from what was seen: limits of the settings last, the lower one strongest. */
 static assay_status find_radius(assay_irradiance_cache *cache, const assay_cache_point *point,
                                 assay_record *record)
@@ -345,13 +352,11 @@ static assay_status find_radius(assay_irradiance_cache *cache, const assay_cache
     /* Where nothing is seen the light changes nowhere, as far as one can tell. */
     radius = radius < cache->diagonal ? radius : cache->diagonal;
     if (s->neighbour_clamp) {
-        neighbourhood      n = {cache, record, radius};
         const assay_status status =
-            assay_record_store_near(cache->store, record->position, radius, clamp_to_neighbour, &n);
+            assay_neighbour_clamp_record(cache->store, record->position, &radius);
         if (status != ASSAY_OK) {
             return status;
         }
-        radius = n.radius;
     }
     double least = s->r_min, most = s->r_max;
     if (point->footprint > 0.0) {
@@ -384,9 +389,11 @@ static assay_status make_record(assay_irradiance_cache *cache, const assay_cache
     to_world(&site->frame, record.translation);
     status = find_radius(cache, point, &record);
     if (status == ASSAY_OK && s->neighbour_clamp) {
-        neighbourhood n = {cache, &record, record.radius};
-        status          = assay_record_store_near(cache->store, record.position, cache->diagonal,
-                                                  clamp_neighbour, &n);
+        status = assay_neighbour_clamp_others(cache->store, &record, cache->diagonal);
+    }
+    if (status == ASSAY_OK && cache->companion.keep) {
+        status = cache->companion.keep(cache->companion.user,
+                                       assay_record_store_count(cache->store), cache->hemisphere);
     }
     return status ? status : assay_record_store_add(cache->store, &record);
 }
@@ -483,7 +490,7 @@ uint64_t assay_irradiance_cache_unserved(const assay_irradiance_cache *cache)
 
 void assay_irradiance_cache_count(const assay_irradiance_cache *cache, assay_ray_counts *counts)
 {
-    for (; cache; cache = cache->next) {
+    for (; cache; cache = cache->borrows_next ? NULL : cache->next) {
         counts->records += assay_record_store_count(cache->store);
         for (int i = 0; i < assay_context_threads(cache->context); i++) {
             assay_ray_counts_add(counts, &cache->worker_counts[i]);

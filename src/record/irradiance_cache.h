@@ -51,6 +51,22 @@ assay_status assay_irradiance_cache_create(const assay_world                    
                                            uint64_t seed, assay_irradiance_cache **cache_out);
 void         assay_irradiance_cache_destroy(assay_irradiance_cache *cache);
 
+/* Something that is kept beside each record of a cache: called with the hemisphere that the record
+ * comes from, from the thread that fills, before the record gets its number.  An error ends the
+ * filling without that record. */
+typedef struct {
+    assay_status (*keep)(void *user, uint32_t number, const assay_hemisphere *hemisphere);
+    void *user;
+} assay_record_companion;
+
+/* A cache of the same light as `beside`, which must outlive it: with records of its own from other
+ * random numbers, a companion, and the levels below of `beside` for its own.  Errors: ARGUMENT,
+ * MEMORY. */
+assay_status assay_irradiance_cache_create_beside(assay_irradiance_cache                *beside,
+                                                  const assay_irradiance_cache_settings *settings,
+                                                  const assay_record_companion          *companion,
+                                                  assay_irradiance_cache               **cache_out);
+
 /* Makes records until every wanted point knows enough (eq. 2.9), or max_records are there.
  * limits_out, if not NULL: how many records there were when each point had been served; a look-up
  * limited to them is what a single pass would have seen.  phase: for the progress, with `before`
@@ -59,6 +75,12 @@ void         assay_irradiance_cache_destroy(assay_irradiance_cache *cache);
 assay_status assay_irradiance_cache_fill(assay_irradiance_cache *cache, const char *phase,
                                          uint64_t before, uint64_t total, size_t count,
                                          const assay_cache_point *points, uint32_t *limits_out);
+
+/* What a look-up sums over: the records numbered below `limit` that contribute at a point.  The
+ * list is the worker's, until its next look-up.  Errors: MEMORY. */
+assay_status assay_irradiance_cache_find(assay_irradiance_cache *cache, assay_vec3 position,
+                                         assay_vec3 normal, uint32_t limit, int worker,
+                                         const assay_contributions **found_out);
 
 /* Indirect irradiance at a point, W/m2, from the records numbered below `limit` (UINT32_MAX: all).
  * Where none of them reaches the point the nearest by weight speaks for it, and the look-up counts
@@ -76,7 +98,8 @@ assay_record_store     *assay_irradiance_cache_store(assay_irradiance_cache *cac
 assay_irradiance_cache *assay_irradiance_cache_next(const assay_irradiance_cache *cache);
 /* Look-ups that no record reached, of this level. */
 uint64_t assay_irradiance_cache_unserved(const assay_irradiance_cache *cache);
-/* Adds the rays traced so far and the records there are, of all levels. */
+/* Adds the rays traced so far and the records there are, of all levels but
+ * those that belong to another cache. */
 void assay_irradiance_cache_count(const assay_irradiance_cache *cache, assay_ray_counts *counts);
 
 #endif

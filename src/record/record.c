@@ -19,6 +19,8 @@
  * it.  A record that is left out without need costs one more record, never a wrong value. */
 #include "record/record.h"
 
+#include "core/numerics.h"
+
 static const double SPARE = 1.0 + 1e-12;
 
 /* sqrt(1 - cos 10 deg) */
@@ -27,6 +29,14 @@ static const double ROOT_10_DEG = 0.1232568334324387088797;
 double assay_record_reach(const assay_record *record, const assay_record_rules *rules)
 {
     return rules->a * record->radius * SPARE;
+}
+
+/* sqrt(1 - n . n_k) <= a, or a sqrt(1 - cos 10 deg); 1 - cos is 2 sin^2 of the half. */
+double assay_record_tilt_max(const assay_record_rules *rules)
+{
+    const double most = rules->weight == ASSAY_WEIGHT_TABELLION ? rules->a * ROOT_10_DEG : rules->a;
+    const double half = most * sqrt(0.5);
+    return half < 1.0 ? 2.0 * assay_asin(half) : ASSAY_PI;
 }
 
 /* sqrt(1 - n . n_k); NaN stays NaN. */

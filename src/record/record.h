@@ -57,6 +57,9 @@ double assay_record_weight(const assay_record *record, const assay_record_rules 
  * the rounding.  May be INFINITY. */
 double assay_record_reach(const assay_record *record, const assay_record_rules *rules);
 
+/* The largest angle between two normals at which a record may contribute, rad; (0, pi]. */
+double assay_record_tilt_max(const assay_record_rules *rules);
+
 /* What the record says that the irradiance at the point is, W/m2. */
 assay_rgb assay_record_extrapolate(const assay_record *record, const assay_record_rules *rules,
                                    assay_vec3 position, assay_vec3 normal);

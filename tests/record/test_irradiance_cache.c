@@ -13,74 +13,9 @@
 #include <cmocka.h>
 
 #include "core/numerics.h"
-#include "record/irradiance_cache.h"
 #include "support/closed_form.h"
+#include "support/lit_world.h"
 #include "support/measure.h"
-#include "support/scene_builder.h"
-
-static const assay_vec3 WALL[4] = {{-0.5, 1, -1}, {0.5, 1, -1}, {0.5, 1, 1}, {-0.5, 1, 1}};
-
-/* Reflectance 0.6 under 5 lux from straight below. */
-static const double RADIANCE = 0.6 * 5.0 * ASSAY_INV_PI;
-
-typedef struct {
-    assay_context *context;
-    assay_scene   *scene;
-    assay_world   *world;
-} lit_world;
-
-static lit_world open_world(scene_builder *b, int threads)
-{
-    lit_world w = {.context = measure_context(threads)};
-    w.scene     = scene_builder_load(b, w.context, NULL);
-    assert_int_equal(assay_world_create(w.scene, &w.world), ASSAY_OK);
-    return w;
-}
-
-static void close_world(lit_world *w)
-{
-    assay_world_destroy(w->world);
-    assay_scene_destroy(w->scene);
-    assay_context_destroy(w->context);
-}
-
-static lit_world wall_world(int threads)
-{
-    scene_builder *b    = scene_builder_create();
-    const int      wall = scene_builder_diffuse(b, 0.6, 0.0, false);
-    scene_builder_quad(b, wall, WALL[0], WALL[1], WALL[2], WALL[3]);
-    scene_builder_top(b, "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":"
-                         "\"directional\",\"intensity\":5}]}}");
-    scene_builder_node(b, "\"rotation\":[0.70710678118654752440,0,0,0.70710678118654752440],"
-                          "\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}");
-    return open_world(b, threads);
-}
-
-/* A closed box of reflectance 0.5 whose walls shine with 1: radiance 2 everywhere. */
-static lit_world furnace_world(int threads)
-{
-    scene_builder *b = scene_builder_create();
-    scene_builder_box(b, scene_builder_diffuse(b, 0.5, 1.0, false), vec3(-1, -1, -1), vec3(1, 1, 1),
-                      true);
-    return open_world(b, threads);
-}
-
-static assay_irradiance_cache_settings settings_of(int theta, int phi)
-{
-    return (assay_irradiance_cache_settings){
-        .layout       = {theta, phi, ASSAY_STRATA_COSINE, false},
-        .rules        = {.a              = 0.2,
-                         .weight         = ASSAY_WEIGHT_WARD,
-                         .gradients      = ASSAY_GRADIENTS_BOTH,
-                         .clamp_negative = true},
-        .r_max        = INFINITY,
-        .r_max_pixels = INFINITY,
-        .max_records  = 1000000,
-        .secondary    = ASSAY_SECONDARY_DIRECT,
-        .levels       = 1,
-        .path         = {.bounces = 2, .roulette_depth = 5, .estimator = ASSAY_ESTIMATOR_MIS},
-    };
-}
 
 static assay_irradiance_cache *make_cache(const lit_world                       *w,
                                           const assay_irradiance_cache_settings *settings)
@@ -88,27 +23,6 @@ static assay_irradiance_cache *make_cache(const lit_world                       
     assay_irradiance_cache *cache = NULL;
     assert_int_equal(assay_irradiance_cache_create(w->world, settings, 3, &cache), ASSAY_OK);
     return cache;
-}
-
-static assay_cache_point point_at(assay_vec3 position, assay_vec3 normal)
-{
-    const assay_vec3 n = vec3_normalize(normal);
-    return (assay_cache_point){
-        .site = {position, n, frame3_from_z(n)}, .footprint = 0.01, .wanted = true};
-}
-
-/* Points over a slightly bent floor, in rows. */
-enum { SIDE = 40, POINTS = SIDE * SIDE };
-
-static assay_cache_point *floor_points(void)
-{
-    assay_cache_point *points = malloc(POINTS * sizeof *points);
-    assert_non_null(points);
-    for (int i = 0; i < POINTS; i++) {
-        const double x = 2.0 * (i % SIDE) / SIDE - 1.0, z = 2.0 * (i / SIDE) / SIDE - 1.0;
-        points[i] = point_at(vec3(x, 0.1 * x * x, z), vec3(-0.2 * x, 1.0, 0.0));
-    }
-    return points;
 }
 
 static assay_status fill(assay_irradiance_cache *cache, size_t count,
@@ -122,26 +36,26 @@ static assay_status fill(assay_irradiance_cache *cache, size_t count,
 static void records_are_lambert_s_formula(void **state)
 {
     (void)state;
-    lit_world                       w        = wall_world(1);
-    assay_irradiance_cache_settings settings = settings_of(64, 201);
+    lit_world                       w        = lit_world_wall(1);
+    assay_irradiance_cache_settings settings = lit_settings(64, 201);
     settings.rules.a                         = 1e-3; /* every point makes a record */
     assay_irradiance_cache *cache            = make_cache(&w, &settings);
-    const assay_cache_point points[]         = {point_at(vec3(0.1, 0, 0.2), vec3(0, 1, 0)),
-                                                point_at(vec3(1.1, 0, 0.3), vec3(0, 1, 0)),
-                                                point_at(vec3(0.3, 0.2, -0.7), vec3(0.2, 1, 0.1)),
-                                                point_at(vec3(-0.9, -0.4, 0.5), vec3(0.3, 1, -0.2))};
+    const assay_cache_point points[]         = {lit_point(vec3(0.1, 0, 0.2), vec3(0, 1, 0)),
+                                                lit_point(vec3(1.1, 0, 0.3), vec3(0, 1, 0)),
+                                                lit_point(vec3(0.3, 0.2, -0.7), vec3(0.2, 1, 0.1)),
+                                                lit_point(vec3(-0.9, -0.4, 0.5), vec3(0.3, 1, -0.2))};
     enum { COUNT = sizeof points / sizeof points[0] };
     assert_int_equal(fill(cache, COUNT, points, NULL), ASSAY_OK);
     assay_record_store *store = assay_irradiance_cache_store(cache);
     assert_int_equal(assay_record_store_count(store), COUNT);
     for (uint32_t i = 0; i < COUNT; i++) {
         const assay_record *r = assay_record_store_at(store, i);
-        const double        e = RADIANCE * (double)closed_polygon(WALL, 4, r->position, r->normal);
-        const assay_vec3    t =
-            vec3_scale(closed_polygon_gradient(WALL, 4, r->position, r->normal), RADIANCE);
+        const double e = LIT_RADIANCE * (double)closed_polygon(LIT_WALL, 4, r->position, r->normal);
+        const assay_vec3 t =
+            vec3_scale(closed_polygon_gradient(LIT_WALL, 4, r->position, r->normal), LIT_RADIANCE);
         const assay_vec3 tangential = vec3_mad(t, -vec3_dot(t, r->normal), r->normal);
         const assay_vec3 g =
-            vec3_scale(closed_polygon_rotation(WALL, 4, r->position, r->normal), RADIANCE);
+            vec3_scale(closed_polygon_rotation(LIT_WALL, 4, r->position, r->normal), LIT_RADIANCE);
         /* What docs/methods/gathering.md has for M = 64: E within 0.5 %, gradients within 3 % of
          * E. */
         assert_true(fabs(r->irradiance.g - e) < 0.005 * e);
@@ -154,23 +68,23 @@ static void records_are_lambert_s_formula(void **state)
                     vec3_length(g) < 0.03 * e);
     }
     assay_irradiance_cache_destroy(cache);
-    close_world(&w);
+    lit_world_close(&w);
 }
 
 /* rms error over the floor in parts of the mean. */
 static double error_over_floor(assay_irradiance_cache *cache, const assay_cache_point *points)
 {
     double squares = 0.0, sum = 0.0;
-    for (int i = 0; i < POINTS; i++) {
+    for (int i = 0; i < LIT_FLOOR_POINTS; i++) {
         assay_rgb          e;
         const assay_vec3   p = points[i].site.position, n = points[i].site.frame.z;
         const assay_status status = assay_irradiance_cache_look_up(cache, p, n, UINT32_MAX, 0, &e);
-        const double       exact  = RADIANCE * (double)closed_polygon(WALL, 4, p, n);
+        const double       exact  = LIT_RADIANCE * (double)closed_polygon(LIT_WALL, 4, p, n);
         assert_int_equal(status, ASSAY_OK);
         squares += (e.r - exact) * (e.r - exact);
         sum += exact;
     }
-    return sqrt(squares * POINTS) / sum;
+    return sqrt(squares * LIT_FLOOR_POINTS) / sum;
 }
 
 /* Interpolated over the floor: the error falls with a, and gradients pay. */
@@ -178,19 +92,19 @@ static void interpolation_converges(void **state)
 {
     (void)state;
     static const double a[3]   = {0.4, 0.2, 0.1};
-    lit_world           w      = wall_world(1);
-    assay_cache_point  *points = floor_points();
+    lit_world           w      = lit_world_wall(1);
+    assay_cache_point  *points = lit_floor(1.0);
     double              last   = INFINITY;
     for (int i = 0; i < 3; i++) {
         double   error[2];
         uint32_t records = 0;
         for (int k = 0; k < 2; k++) {
-            assay_irradiance_cache_settings settings = settings_of(48, 150);
+            assay_irradiance_cache_settings settings = lit_settings(48, 150);
             settings.rules.a                         = a[i];
             settings.r_max                           = 1.0; /* the sky leaves R large */
             settings.rules.gradients      = k ? ASSAY_GRADIENTS_BOTH : ASSAY_GRADIENTS_NONE;
             assay_irradiance_cache *cache = make_cache(&w, &settings);
-            assert_int_equal(fill(cache, POINTS, points, NULL), ASSAY_OK);
+            assert_int_equal(fill(cache, LIT_FLOOR_POINTS, points, NULL), ASSAY_OK);
             error[k] = error_over_floor(cache, points);
             records  = assay_record_store_count(assay_irradiance_cache_store(cache));
             assert_int_equal(assay_irradiance_cache_unserved(cache), 0);
@@ -204,7 +118,7 @@ static void interpolation_converges(void **state)
     }
     assert_true(last < 0.005);
     free(points);
-    close_world(&w);
+    lit_world_close(&w);
 }
 
 /* Everything that a record is, in a closed box of one radiance. */
@@ -212,8 +126,8 @@ static void furnace(void **state)
 {
     (void)state;
     for (int secondary = ASSAY_SECONDARY_PATH; secondary <= ASSAY_SECONDARY_CACHE; secondary++) {
-        lit_world                       w        = furnace_world(1);
-        assay_irradiance_cache_settings settings = settings_of(8, 25);
+        lit_world                       w        = lit_world_furnace(1);
+        assay_irradiance_cache_settings settings = lit_settings(8, 25);
         assay_cache_point               points[5];
         settings.secondary            = (assay_secondary)secondary;
         settings.levels               = 3;
@@ -222,7 +136,7 @@ static void furnace(void **state)
         settings.rules.a              = 0.4;
         assay_irradiance_cache *cache = make_cache(&w, &settings);
         for (int i = 0; i < 5; i++) {
-            points[i] = point_at(vec3(0.3 * i - 0.6, -1, 0.1), vec3(0, 1, 0));
+            points[i] = lit_point(vec3(0.3 * i - 0.6, -1, 0.1), vec3(0, 1, 0));
         }
         assert_int_equal(fill(cache, 5, points, NULL), ASSAY_OK);
         assay_record_store *store = assay_irradiance_cache_store(cache);
@@ -238,7 +152,7 @@ static void furnace(void **state)
                       count, mean / ASSAY_PI);
         assert_true(fabs(mean / ASSAY_PI - 1.0) < 0.04);
         assay_irradiance_cache_destroy(cache);
-        close_world(&w);
+        lit_world_close(&w);
     }
 }
 
@@ -258,15 +172,15 @@ static void expect_same_records(assay_irradiance_cache *a, assay_irradiance_cach
 static void waves_are_the_serial_algorithm(void **state)
 {
     (void)state;
-    lit_world                             one = wall_world(1), three = wall_world(3);
-    const assay_irradiance_cache_settings settings = settings_of(4, 12);
-    assay_cache_point                    *points   = floor_points();
-    uint32_t                             *limits   = malloc(POINTS * sizeof *limits);
+    lit_world                             one = lit_world_wall(1), three = lit_world_wall(3);
+    const assay_irradiance_cache_settings settings = lit_settings(4, 12);
+    assay_cache_point                    *points   = lit_floor(1.0);
+    uint32_t                             *limits   = malloc(LIT_FLOOR_POINTS * sizeof *limits);
     assay_irradiance_cache               *serial   = make_cache(&one, &settings),
                            *waves                  = make_cache(&three, &settings);
     assert_non_null(limits);
-    assert_int_equal(fill(waves, POINTS, points, limits), ASSAY_OK);
-    for (int i = 0; i < POINTS; i++) {
+    assert_int_equal(fill(waves, LIT_FLOOR_POINTS, points, limits), ASSAY_OK);
+    for (int i = 0; i < LIT_FLOOR_POINTS; i++) {
         assay_rgb then, now;
         uint32_t  limit = 0;
         assert_int_equal(fill(serial, 1, &points[i], &limit), ASSAY_OK);
@@ -284,8 +198,8 @@ static void waves_are_the_serial_algorithm(void **state)
     assay_irradiance_cache_destroy(waves);
     free(limits);
     free(points);
-    close_world(&one);
-    close_world(&three);
+    lit_world_close(&one);
+    lit_world_close(&three);
 }
 
 /* Eq. 2.9 literally: for a above 1 one record may not be enough, and the sum must reach a. */
@@ -321,9 +235,9 @@ static void enough_is_the_sum_of_weights(void **state)
 static assay_irradiance_cache *filled(const lit_world                       *w,
                                       const assay_irradiance_cache_settings *settings)
 {
-    assay_cache_point      *points = floor_points();
+    assay_cache_point      *points = lit_floor(1.0);
     assay_irradiance_cache *cache  = make_cache(w, settings);
-    assert_int_equal(fill(cache, POINTS, points, NULL), ASSAY_OK);
+    assert_int_equal(fill(cache, LIT_FLOOR_POINTS, points, NULL), ASSAY_OK);
     free(points);
     return cache;
 }
@@ -331,9 +245,9 @@ static assay_irradiance_cache *filled(const lit_world                       *w,
 static void radii_keep_their_limits(void **state)
 {
     (void)state;
-    lit_world w = wall_world(1);
+    lit_world w = lit_world_wall(1);
     for (int k = 0; k < 4; k++) {
-        assay_irradiance_cache_settings settings = settings_of(4, 12);
+        assay_irradiance_cache_settings settings = lit_settings(4, 12);
         double                          least = 0.0, most = INFINITY;
         switch (k) {
         case 0: settings.r_min = least = 50.0; break;
@@ -351,7 +265,7 @@ static void radii_keep_their_limits(void **state)
         }
         assay_irradiance_cache_destroy(cache);
     }
-    close_world(&w);
+    lit_world_close(&w);
 }
 
 static double steepest(assay_irradiance_cache *cache)
@@ -373,8 +287,8 @@ static double steepest(assay_irradiance_cache *cache)
 static void neighbours_are_clamped(void **state)
 {
     (void)state;
-    lit_world                       w        = furnace_world(1);
-    assay_irradiance_cache_settings settings = settings_of(3, 6);
+    lit_world                       w        = lit_world_furnace(1);
+    assay_irradiance_cache_settings settings = lit_settings(3, 6);
     settings.layout.jitter                   = true; /* few random rays: radii jump */
     settings.rules.a                         = 0.1;
     assay_irradiance_cache *free_ones        = filled(&w, &settings);
@@ -386,14 +300,14 @@ static void neighbours_are_clamped(void **state)
     assert_true(steepest(clamped) < 1e-12);
     assay_irradiance_cache_destroy(free_ones);
     assay_irradiance_cache_destroy(clamped);
-    close_world(&w);
+    lit_world_close(&w);
 }
 
 static void records_are_limited(void **state)
 {
     (void)state;
-    lit_world                       w        = wall_world(1);
-    assay_irradiance_cache_settings settings = settings_of(4, 12);
+    lit_world                       w        = lit_world_wall(1);
+    assay_irradiance_cache_settings settings = lit_settings(4, 12);
     settings.max_records                     = 3;
     assay_irradiance_cache *cache            = filled(&w, &settings);
     assay_rgb               e;
@@ -404,15 +318,15 @@ static void records_are_limited(void **state)
     assert_true(e.r > 0.0);
     assert_int_equal(assay_irradiance_cache_unserved(cache), 1);
     assay_irradiance_cache_destroy(cache);
-    close_world(&w);
+    lit_world_close(&w);
 }
 
 /* Tabellion's weight: R is half the nearest distance. */
 static void tabellion_radius(void **state)
 {
     (void)state;
-    lit_world                       w        = wall_world(1);
-    assay_irradiance_cache_settings settings = settings_of(16, 50);
+    lit_world                       w        = lit_world_wall(1);
+    assay_irradiance_cache_settings settings = lit_settings(16, 50);
     settings.rules.weight                    = ASSAY_WEIGHT_TABELLION;
     settings.rules.a                         = 1.0;
     assay_irradiance_cache *cache            = filled(&w, &settings);
@@ -422,7 +336,7 @@ static void tabellion_radius(void **state)
         assert_true(r->radius == 0.5 * r->nearest);
     }
     assay_irradiance_cache_destroy(cache);
-    close_world(&w);
+    lit_world_close(&w);
 }
 
 int main(void)

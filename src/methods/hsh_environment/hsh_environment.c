@@ -62,22 +62,6 @@ static assay_status make_bases(hsh_environment *s)
     return assay_clamped_cosine(s->sh_order, s->cosine);
 }
 
-/* Steps of a grid that are still waited for: some minutes of one processor. */
-static const double MOST_STEPS = 1e12;
-
-/* A texel takes a BRDF's value, some 300 multiplications, and n^2 of them, at each node. */
-static assay_status check_work(const hsh_environment *s)
-{
-    const double texels = (double)s->side * s->side, nodes = 2.0 * s->nodes * s->nodes;
-    const double steps = texels * nodes * (300.0 + (double)s->order * s->order);
-    return steps <= MOST_STEPS
-               ? ASSAY_OK
-               : assay_fail(s->context, ASSAY_ERR_ARGUMENT,
-                            "parameters 'grid' %d, 'nodes' %d and 'order' %d ask for %.1g steps a "
-                            "BRDF, hours of work: grid^2 * 2 nodes^2 * (300 + order^2) may be %.0g",
-                            s->side, s->nodes, s->order, steps, MOST_STEPS);
-}
-
 static assay_status create(assay_context *context, const assay_params *params, void **state_out)
 {
     hsh_environment *state = assay_allocate(context, 1, sizeof *state);
@@ -93,7 +77,8 @@ static assay_status create(assay_context *context, const assay_params *params, v
         .nodes      = assay_params_int(params, "nodes"),
         .brdf_in_sh = assay_params_choice(params, "brdf_basis") == 1,
     };
-    assay_status status = check_work(state);
+    assay_status status =
+        assay_material_grids_check_work(context, state->side, state->nodes, state->order);
     if (status == ASSAY_OK && state->brdf_in_sh && state->order > state->sh_order) {
         status =
             assay_fail(context, ASSAY_ERR_ARGUMENT,

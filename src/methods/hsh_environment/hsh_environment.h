@@ -4,18 +4,11 @@
 #define ASSAY_METHODS_HSH_ENVIRONMENT_H
 
 #include "assay/basis.h"
-#include "methods/method.h"
+#include "methods/material_grids.h"
 
 extern const assay_method assay_method_hsh_environment;
 
-enum { HSH_ENVIRONMENT_CHANNELS = 3 };
-
-/* A material's BRDF times cosine, as coefficients over wi for a grid of wo.  Every model here is
- * affine in the base colour: f = black + base_color * slope, slope being grey. */
-typedef struct {
-    assay_brdf_grid *black[HSH_ENVIRONMENT_CHANNELS]; /* base colour 0; channels may share one */
-    assay_brdf_grid *slope;                           /* base colour 1 less base colour 0      */
-} material_grids;
+enum { HSH_ENVIRONMENT_CHANNELS = ASSAY_MATERIAL_CHANNELS };
 
 typedef struct {
     assay_context *context;
@@ -25,12 +18,12 @@ typedef struct {
     int      order, sh_order, side, nodes;
     bool     brdf_in_sh;
 
-    assay_basis    *sh, *brdf; /* of the environment, and of the BRDFs           */
-    assay_sparse   *to_brdf;   /* C: SH to HSH; NULL where BRDFs are in SH       */
-    double         *light;     /* 3 rows of sh's count: the environment, world   */
-    double         *cosine;    /* sh_order: A_l of the clamped cosine            */
-    material_grids *materials; /* of each material that is seen; zeros for others */
-    uint32_t        material_count;
+    assay_basis          *sh, *brdf; /* of the environment, and of the BRDFs           */
+    assay_sparse         *to_brdf;   /* C: SH to HSH; NULL where BRDFs are in SH       */
+    double               *light;     /* 3 rows of sh's count: the environment, world   */
+    double               *cosine;    /* sh_order: A_l of the clamped cosine            */
+    assay_material_grids *materials; /* of each material that is seen; zeros for others */
+    uint32_t              material_count;
 } hsh_environment;
 
 /* Grids of all materials in use.  Errors: UNSUPPORTED (a material that changes its lobe from point

@@ -1,10 +1,8 @@
 /* hsh_environment_render.c - at every point: turn the environment into the local frame, convert it
  * to the BRDF's basis, and take the dot product [gautron06] 3.5.3.
  *
- * Invariant: the local frame is right-handed with z on the viewer's side.  Seen from the back it is
- * the surface's frame turned half about x; models mirror z instead, which is the same for them, as
- * all are symmetric about the plane of x and z.  Nothing is random but the place in the pixel, and
- * that is where `path` looks, too. */
+ * Invariant: the local frame is right-handed with z on the viewer's side (material_grids.h).
+ * Nothing is random but the place in the pixel, and that is where `path` looks, too. */
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/parallel.h"
@@ -40,15 +38,6 @@ static double dot(size_t count, const double *a, const double *b)
     return sum;
 }
 
-static assay_frame3 viewer_frame(const assay_vertex *vertex)
-{
-    if (vertex->front) {
-        return vertex->frame;
-    }
-    return (assay_frame3){vertex->frame.x, vec3_negate(vertex->frame.y),
-                          vec3_negate(vertex->frame.z)};
-}
-
 /* The environment's light in the BRDF's basis and the local frame. */
 static assay_status light_at(const hsh_environment *s, desk *d, const assay_frame3 *frame)
 {
@@ -74,32 +63,15 @@ static assay_status light_at(const hsh_environment *s, desk *d, const assay_fram
 static assay_status reflect(const hsh_environment *s, desk *d, const assay_vertex *vertex,
                             assay_rgb *radiance_out)
 {
-    const material_grids *grids = &s->materials[vertex->surface.material];
-    const size_t          count = assay_basis_count(s->brdf);
-    const assay_frame3    frame = viewer_frame(vertex);
-    const assay_vec3      wo    = frame3_to_local(&frame, vertex->wo);
-    if (!grids->slope || !(wo.z > 0.0)) {
-        *radiance_out = rgb_grey(0.0);
-        return ASSAY_OK;
+    const assay_material_grids *grids  = &s->materials[vertex->surface.material];
+    const assay_frame3          frame  = assay_material_frame(vertex);
+    assay_status                status = ASSAY_OK;
+    if (grids->slope) {
+        status = light_at(s, d, &frame);
     }
-    assay_status status = light_at(s, d, &frame);
-    if (status == ASSAY_OK) {
-        status = assay_brdf_grid_lookup(grids->slope, wo, d->lobe);
-    }
-    double       sums[CHANNELS] = {0.0, 0.0, 0.0};
-    const double base[CHANNELS] = {vertex->bsdf.base_color.r, vertex->bsdf.base_color.g,
-                                   vertex->bsdf.base_color.b};
-    for (size_t c = 0; c < CHANNELS && status == ASSAY_OK; c++) {
-        sums[c] = base[c] * dot(count, d->light + c * count, d->lobe);
-    }
-    for (size_t c = 0; c < CHANNELS && status == ASSAY_OK; c++) {
-        if (c == 0 || grids->black[c] != grids->black[c - 1]) {
-            status = assay_brdf_grid_lookup(grids->black[c], wo, d->lobe);
-        }
-        sums[c] += dot(count, d->light + c * count, d->lobe);
-    }
-    *radiance_out = rgb(sums[0], sums[1], sums[2]);
-    return status;
+    return status ? status
+                  : assay_material_grids_reflect(grids, assay_basis_count(s->brdf), vertex,
+                                                 d->light, d->lobe, radiance_out);
 }
 
 static assay_status sample_color(const render_job *job, desk *d, int x, int y, uint64_t pixel,

@@ -1,0 +1,409 @@
+/* radiance_cache_method.c - indirect light from irradiance records and, where surfaces are glossy
+ * within reach, from radiance records; what is too sharp comes from paths.
+ *
+ * Invariant: the light of a point is lambert / pi E, from the irradiance cache, and the light that
+ * f - lambert / pi scatters, from one of the other two.  Which one is its material's affair, so
+ * both parts always add up to f, whatever the Lambertian is. */
+#include "methods/radiance_cache/radiance_cache_method.h"
+
+#include <string.h>
+
+#include "core/alloc.h"
+#include "core/context.h"
+#include "core/numerics.h"
+#include "methods/cache_file.h"
+#include "methods/cache_params.h"
+#include "methods/radiance_cache/glossy_materials.h"
+#include "record/radiance_cache.h"
+#include "record/record_bundle.h"
+
+enum { MOST_ORDER = 20 };
+
+static const assay_param_desc PARAMS[] = {
+    ASSAY_CACHE_PARAMS,
+    {"order", ASSAY_PARAM_INT, "", "10", 1, MOST_ORDER, NULL,
+     "Order n of radiance and BRDFs in hemispherical harmonics: n^2 coefficients.",
+     "[gautron06] 4.7"},
+    {"coefficient_gradient", ASSAY_PARAM_CHOICE, "", "walls", 0, 0, "none|points|walls",
+     "Translational gradients of the coefficients: none, of points that keep their radiance, or of "
+     "walls that move before one another.",
+     "[krivanek05], [krivanek05b]"},
+    {"rotation", ASSAY_PARAM_CHOICE, "", "table", 0, 0, "exact|table|conversion|digon|analytical",
+     "How coefficients pass into the frame of another normal.", "[gautron06] 3.4"},
+    {"rotation_steps", ASSAY_PARAM_INT, "", "16", 1, 1024, NULL,
+     "Matrices between which rotation=table and digon interpolate, up to the largest tilt at which "
+     "a record counts.",
+     "[gautron06] 3.4.2"},
+    {"sh_order", ASSAY_PARAM_INT, "", "15", 1, ASSAY_BASIS_MAX_ORDER, NULL,
+     "Order of the spherical harmonics of rotation=conversion.", "[gautron06] 3.4.1"},
+    {"glossy_accuracy", ASSAY_PARAM_REAL, "", "0.97", 0, 1, NULL,
+     "A glossy material is cached where the order holds this share of its lobe's energy at 45 "
+     "degrees, else it gets paths.",
+     "[gautron06] eq. 3.32"},
+    {"grid", ASSAY_PARAM_INT, "texels", "32", 2, 512, NULL,
+     "Side of the paraboloid grid of outgoing directions.", "[gautron06] eq. 3.35, 3.36"},
+    {"nodes", ASSAY_PARAM_INT, "", "48", 8, 512, NULL,
+     "Gauss nodes in the polar angle (twice as many in azimuth) for a BRDF's coefficients.",
+     "[gautron06] eq. 3.34"},
+    {0},
+};
+
+/* What had been made when a point of the wave was served: their sum names the pair, as neither ever
+ * falls. */
+typedef struct {
+    uint32_t irradiance, radiance;
+} made_so_far;
+
+/* A worker's own. */
+typedef struct {
+    double *light;   /* 3 rows of coefficients */
+    double *scratch; /* one                    */
+} desk;
+
+typedef struct {
+    assay_context                *context;
+    const assay_world            *world;
+    assay_radiance_cache_settings settings;
+    assay_cached_image_settings   image;
+    assay_material_grid_settings  grid;
+    double                        glossy_accuracy;
+    assay_irradiance_cache       *irradiance;
+    assay_radiance_cache         *radiance; /* NULL: no material is within reach */
+    glossy_materials              materials;
+    desk                         *desks;
+    /* of a wave */
+    assay_cache_point *points;
+    uint32_t          *limits;
+    made_so_far       *made;
+    size_t             point_capacity, limit_capacity, made_capacity, made_count;
+} cache_state;
+
+static void release_desks(cache_state *s)
+{
+    for (int i = 0; s->desks && i < assay_context_threads(s->context); i++) {
+        assay_release(s->context, s->desks[i].light);
+        assay_release(s->context, s->desks[i].scratch);
+    }
+    assay_release(s->context, s->desks);
+}
+
+static void destroy(void *state)
+{
+    cache_state *s = state;
+    if (s) {
+        release_desks(s);
+        glossy_materials_release(&s->materials);
+        assay_radiance_cache_destroy(s->radiance);
+        assay_irradiance_cache_destroy(s->irradiance);
+        assay_release(s->context, s->points);
+        assay_release(s->context, s->limits);
+        assay_release(s->context, s->made);
+        assay_release(s->context, s);
+    }
+}
+
+static assay_status create(assay_context *context, const assay_params *params, void **state_out)
+{
+    cache_state *state = assay_allocate(context, 1, sizeof *state);
+    if (!state) {
+        return assay_fail_memory(context, "the radiance cache");
+    }
+    state->context         = context;
+    state->glossy_accuracy = assay_params_real(params, "glossy_accuracy");
+    state->settings        = (assay_radiance_cache_settings){
+               .order    = assay_params_int(params, "order"),
+               .gradient = (assay_coefficient_gradient)assay_params_choice(params, "coefficient_gradient"),
+               .rotation = (assay_hsh_rotation_way)assay_params_choice(params, "rotation"),
+               .rotation_steps = assay_params_int(params, "rotation_steps"),
+               .sh_order       = assay_params_int(params, "sh_order"),
+    };
+    state->grid = (assay_material_grid_settings){
+        .side           = assay_params_int(params, "grid"),
+        .nodes          = assay_params_int(params, "nodes"),
+        .beyond_lambert = true,
+    };
+    assay_status status = assay_material_grids_check_work(context, state->grid.side,
+                                                          state->grid.nodes, state->settings.order);
+    status =
+        status ? status
+               : assay_cache_params_read(context, params, &state->settings.records, &state->image);
+    if (status != ASSAY_OK) {
+        destroy(state);
+        return status;
+    }
+    *state_out = state;
+    return ASSAY_OK;
+}
+
+/* ---- once a frame ---- */
+
+static assay_status make_desks(cache_state *s)
+{
+    const size_t threads = (size_t)assay_context_threads(s->context);
+    const size_t count   = assay_basis_count(assay_radiance_cache_basis(s->radiance));
+    s->desks             = assay_allocate(s->context, threads, sizeof *s->desks);
+    bool have            = s->desks != NULL;
+    for (size_t i = 0; have && i < threads; i++) {
+        s->desks[i].light   = assay_allocate(s->context, 3 * count, sizeof(double));
+        s->desks[i].scratch = assay_allocate(s->context, count, sizeof(double));
+        have                = s->desks[i].light && s->desks[i].scratch;
+    }
+    return have ? ASSAY_OK : assay_fail_memory(s->context, "the radiance cache");
+}
+
+/* The basis of the choice of materials is that of the cache, which comes only where it is needed:
+ * its rotations may take seconds. */
+static assay_status make_materials(cache_state *s)
+{
+    assay_basis *basis  = NULL;
+    assay_status status = assay_basis_create(s->context, ASSAY_BASIS_HSH, s->settings.order,
+                                             ASSAY_CONVENTION_THESIS, &basis);
+    s->grid.basis       = basis;
+    status              = status ? status
+                                 : glossy_materials_make(s->context, s->world->scene, &s->grid,
+                                                         s->glossy_accuracy, &s->materials);
+    assay_basis_destroy(basis);
+    return status;
+}
+
+static assay_status prepare(void *state, const assay_frame *frame)
+{
+    cache_state *s      = state;
+    s->world            = frame->world;
+    assay_status status = s->materials.grids ? ASSAY_OK : make_materials(s);
+    status              = status ? status
+                                 : assay_irradiance_cache_create(frame->world, &s->settings.records, frame->seed,
+                                                                 &s->irradiance);
+    if (status != ASSAY_OK || !s->materials.any) {
+        return status;
+    }
+    status = assay_radiance_cache_create(s->context, s->irradiance, &s->settings, &s->radiance);
+    return status ? status : make_desks(s);
+}
+
+/* ---- filling ---- */
+
+static assay_rgb lambert_of(const assay_cached_point *point)
+{
+    const assay_bsdf_view view = assay_bsdf_seen_from(&point->vertex.bsdf, point->vertex.wo_local);
+    return assay_bsdf_view_lambert(&view);
+}
+
+static const assay_material_grids *grids_at(const cache_state *s, const assay_cached_point *point)
+{
+    return s->radiance && point->hit ? glossy_materials_at(&s->materials, &point->vertex) : NULL;
+}
+
+static assay_status make_room(cache_state *s, size_t count)
+{
+    void        *points = s->points, *limits = s->limits, *made = s->made;
+    assay_status status =
+        assay_grow(s->context, &points, &s->point_capacity, count, sizeof *s->points);
+    status = status ? status
+                    : assay_grow(s->context, &limits, &s->limit_capacity, count, sizeof *s->limits);
+    status =
+        status ? status : assay_grow(s->context, &made, &s->made_capacity, count, sizeof *s->made);
+    s->points = points;
+    s->limits = limits;
+    s->made   = made;
+    return status ? assay_fail_memory(s->context, "visible points") : ASSAY_OK;
+}
+
+static assay_status fill(void *user, const char *phase, uint64_t before, uint64_t total,
+                         size_t count, const assay_cached_point *points, uint32_t *limits_out)
+{
+    cache_state *s      = user;
+    assay_status status = make_room(s, count);
+    for (size_t i = 0; i < count && status == ASSAY_OK; i++) {
+        s->points[i] = (assay_cache_point){0};
+        if (points[i].hit) {
+            s->points[i] = (assay_cache_point){.site      = assay_gather_site_of(&points[i].vertex),
+                                               .footprint = points[i].footprint,
+                                               .wanted    = points[i].centre ||
+                                                         !rgb_is_black(lambert_of(&points[i]))};
+        }
+    }
+    status = status ? status
+                    : assay_irradiance_cache_fill(s->irradiance, phase, before, total, count,
+                                                  s->points, limits_out);
+    if (status != ASSAY_OK || !s->radiance) {
+        return status;
+    }
+    for (size_t i = 0; i < count; i++) {
+        s->points[i].wanted = grids_at(s, &points[i]) != NULL;
+    }
+    status = assay_irradiance_cache_fill(assay_radiance_cache_records(s->radiance), phase, before,
+                                         total, count, s->points, s->limits);
+    for (size_t i = 0; i < count && status == ASSAY_OK; i++) {
+        s->made[i] = (made_so_far){limits_out[i], s->limits[i]};
+        limits_out[i] += s->limits[i];
+    }
+    s->made_count = count;
+    return status;
+}
+
+/* From the number that the driver keeps back to both; UINT32_MAX: all. */
+static made_so_far made_within(const cache_state *s, uint32_t limit)
+{
+    if (limit == UINT32_MAX || !s->radiance) {
+        return (made_so_far){limit, limit};
+    }
+    size_t low = 0, high = s->made_count;
+    while (low + 1 < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (s->made[middle].irradiance + s->made[middle].radiance <= limit) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return s->made[low];
+}
+
+/* ---- light for the image ---- */
+
+static assay_status irradiance_within(const cache_state *s, const assay_cached_point *point,
+                                      uint32_t limit, int worker, assay_rgb *irradiance_out)
+{
+    const assay_gather_site site = assay_gather_site_of(&point->vertex);
+    return assay_irradiance_cache_look_up(s->irradiance, site.position, site.frame.z, limit, worker,
+                                          irradiance_out);
+}
+
+static assay_status irradiance(void *user, const assay_cached_point *point, uint32_t limit,
+                               int worker, assay_rgb *irradiance_out)
+{
+    const cache_state *s = user;
+    return irradiance_within(s, point, made_within(s, limit).irradiance, worker, irradiance_out);
+}
+
+/* What the lobe reflects; *found_out false where no record reaches the point. */
+static assay_status gloss(const cache_state *s, const assay_material_grids *grids,
+                          const assay_cached_point *point, uint32_t limit, int worker,
+                          assay_rgb *gloss_out, bool *found_out)
+{
+    const desk        *d      = &s->desks[worker];
+    const assay_frame3 frame  = assay_material_frame(&point->vertex);
+    const size_t       count  = assay_basis_count(assay_radiance_cache_basis(s->radiance));
+    const assay_status status = assay_radiance_cache_look_up(
+        s->radiance, point->vertex.surface.position, &frame, limit, worker, d->light, found_out);
+    return status || !*found_out ? status
+                                 : assay_material_grids_reflect(grids, count, &point->vertex,
+                                                                d->light, d->scratch, gloss_out);
+}
+
+static assay_rgb not_negative(assay_rgb c)
+{
+    return rgb(c.r > 0.0 ? c.r : 0.0, c.g > 0.0 ? c.g : 0.0, c.b > 0.0 ? c.b : 0.0);
+}
+
+static assay_status radiance(void *user, const assay_cached_point *point, uint32_t limit,
+                             assay_random *random, assay_ray_counts *counts, int worker,
+                             assay_rgb *radiance_out)
+{
+    const cache_state          *s       = user;
+    const made_so_far           made    = made_within(s, limit);
+    const assay_material_grids *grids   = grids_at(s, point);
+    const assay_rgb             lambert = lambert_of(point);
+    assay_rgb                   sum = rgb_grey(0.0), rest = rgb_grey(0.0);
+    assay_status                status = ASSAY_OK;
+    bool                        found  = false;
+    if (!rgb_is_black(lambert)) {
+        status = irradiance_within(s, point, made.irradiance, worker, &sum);
+        sum    = rgb_scale(rgb_mul(sum, lambert), ASSAY_INV_PI);
+    }
+    if (grids && status == ASSAY_OK) {
+        status = gloss(s, grids, point, made.radiance, worker, &rest, &found);
+    }
+    if (!found && status == ASSAY_OK && point->vertex.bsdf.model != ASSAY_BSDF_LAMBERT) {
+        rest = assay_path_indirect(s->world, &s->settings.records.path, &point->vertex, lambert,
+                                   random, counts);
+    }
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    sum           = rgb_add(sum, rest);
+    *radiance_out = found && s->settings.records.rules.clamp_negative ? not_negative(sum) : sum;
+    return ASSAY_OK;
+}
+
+static void report(const cache_state *s)
+{
+    assay_irradiance_cache *radiance =
+        s->radiance ? assay_radiance_cache_records(s->radiance) : NULL;
+    const uint64_t nearest = assay_irradiance_cache_unserved(s->irradiance);
+    const uint64_t paths   = radiance ? assay_irradiance_cache_unserved(radiance) : 0;
+    assay_inform(s->context, ASSAY_LOG_INFO,
+                 "radiance-cache: %u irradiance and %u radiance records",
+                 assay_record_store_count(assay_irradiance_cache_store(s->irradiance)),
+                 radiance ? assay_record_store_count(assay_irradiance_cache_store(radiance)) : 0);
+    if (nearest > 0 || paths > 0) {
+        assay_inform(s->context, ASSAY_LOG_WARNING,
+                     "radiance-cache: look-ups that no record reaches (max_records, or records "
+                     "that shrank): %llu of irradiance, answered by the nearest record, and %llu "
+                     "of radiance, answered by paths",
+                     (unsigned long long)nearest, (unsigned long long)paths);
+    }
+}
+
+/* The coefficients of all records, a row each: 3 n^2. */
+static assay_status dump_coefficients(const cache_state *s, assay_bundle *bundle)
+{
+    assay_irradiance_cache *records = assay_radiance_cache_records(s->radiance);
+    const uint32_t          rows  = assay_record_store_count(assay_irradiance_cache_store(records));
+    const size_t            size  = 3 * assay_basis_count(assay_radiance_cache_basis(s->radiance));
+    assay_array            *table = NULL;
+    if (rows == 0) {
+        return ASSAY_OK;
+    }
+    assay_status status = assay_array_create(s->context, rows, size, &table);
+    for (uint32_t i = 0; i < rows && status == ASSAY_OK; i++) {
+        memcpy(assay_array_data(table) + i * size,
+               assay_radiance_cache_coefficients(s->radiance, i), size * sizeof(double));
+    }
+    status = status ? status
+                    : assay_bundle_add_table(bundle, "radiance_records/coefficients", "W/(m2 sr)",
+                                             table);
+    assay_array_destroy(table);
+    return status;
+}
+
+static assay_status dump(const cache_state *s, assay_bundle *bundle)
+{
+    assay_status status = assay_cache_file_add(s->context, bundle, s->irradiance);
+    if (status != ASSAY_OK || !s->radiance) {
+        return status;
+    }
+    status = assay_record_bundle_add(
+        s->context, bundle, "radiance_records",
+        assay_irradiance_cache_store(assay_radiance_cache_records(s->radiance)));
+    return status ? status : dump_coefficients(s, bundle);
+}
+
+static assay_status render(void *state, const assay_frame *frame, assay_film *film,
+                           assay_ray_counts *counts)
+{
+    cache_state             *s     = state;
+    const assay_cached_light light = {
+        .user = s, .fill = fill, .radiance = radiance, .irradiance = irradiance};
+    assay_status status = assay_cached_image_render(frame, &s->image, &light, film, counts);
+    assay_irradiance_cache_count(s->irradiance, counts);
+    if (s->radiance) {
+        assay_irradiance_cache_count(assay_radiance_cache_records(s->radiance), counts);
+    }
+    if (status == ASSAY_OK) {
+        report(s);
+    }
+    return status == ASSAY_OK && frame->dump ? dump(s, frame->dump) : status;
+}
+
+const assay_method assay_method_radiance_cache = {
+    .name    = "radiance-cache",
+    .summary = "Radiance caching: as irradiance-cache, and indirect light on glossy surfaces from "
+               "records in hemispherical harmonics.",
+    .params  = PARAMS,
+    .create  = create,
+    .prepare = prepare,
+    .render  = render,
+    .destroy = destroy,
+};

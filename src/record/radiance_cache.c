@@ -1,0 +1,207 @@
+/* radiance_cache.c - coefficients beside records, and asking for them.
+ *
+ * A record's frame is frame3_from_z of its normal, and so is the frame in which a point adds up
+ * what its records say: where both have the same normal, as on all flat surfaces, nothing is
+ * turned; the sum is turned about z into the frame that is wanted, once.
+ *
+ * Invariant: record k of the store has row k of coefficients and gradients.  A row is written
+ * before its record is added, so that a record without a row never is. */
+#include "record/radiance_cache.h"
+
+#include <assert.h>
+#include <string.h>
+
+#include "core/alloc.h"
+#include "core/context.h"
+#include "record/radiance_turn.h"
+
+enum { CHANNELS = 3 };
+
+struct assay_radiance_cache {
+    assay_context                *context;
+    assay_radiance_cache_settings settings;
+    int                           workers;
+    assay_basis                  *hsh;
+    size_t                        count; /* coefficients of a record: CHANNELS rows          */
+    assay_irradiance_cache       *records;
+    assay_radiance_turn          *turn;
+    double                       *coefficients;      /* rows of count                             */
+    assay_vec3                   *gradients;         /* the same, local; NULL without             */
+    size_t  coefficient_capacity, gradient_capacity; /* rows                                   */
+    double *scratch; /* a worker: two rows                             */
+};
+
+void assay_radiance_cache_destroy(assay_radiance_cache *cache)
+{
+    if (cache) {
+        assay_radiance_turn_destroy(cache->turn);
+        assay_irradiance_cache_destroy(cache->records);
+        assay_basis_destroy(cache->hsh);
+        assay_release(cache->context, cache->coefficients);
+        assay_release(cache->context, cache->gradients);
+        assay_release(cache->context, cache->scratch);
+        assay_release(cache->context, cache);
+    }
+}
+
+static bool has_gradients(const assay_radiance_cache *cache)
+{
+    return cache->settings.gradient != ASSAY_COEFFICIENT_GRADIENT_NONE;
+}
+
+/* ---- records ---- */
+
+static assay_status keep(void *user, uint32_t number, const assay_hemisphere *hemisphere)
+{
+    assay_radiance_cache *cache  = user;
+    void                 *rows   = cache->coefficients;
+    assay_status          status = assay_grow(cache->context, &rows, &cache->coefficient_capacity,
+                                              (size_t)number + 1, cache->count * sizeof(double));
+    cache->coefficients          = rows;
+    if (status == ASSAY_OK) {
+        status = assay_hemisphere_project(hemisphere, cache->context, cache->hsh,
+                                          cache->coefficients + number * cache->count);
+    }
+    if (status != ASSAY_OK || !has_gradients(cache)) {
+        return status;
+    }
+    rows   = cache->gradients;
+    status = assay_grow(cache->context, &rows, &cache->gradient_capacity, (size_t)number + 1,
+                        cache->count * sizeof(assay_vec3));
+    cache->gradients = rows;
+    return status ? status
+                  : assay_hemisphere_project_gradient(hemisphere, cache->context, cache->hsh,
+                                                      cache->settings.gradient ==
+                                                              ASSAY_COEFFICIENT_GRADIENT_WALLS
+                                                          ? ASSAY_GRADIENT_WALLS
+                                                          : ASSAY_GRADIENT_POINTS,
+                                                      cache->gradients + number * cache->count);
+}
+
+static assay_status create_parts(assay_radiance_cache *cache, assay_irradiance_cache *beside)
+{
+    assay_radiance_cache_settings *s         = &cache->settings;
+    const assay_record_companion   companion = {.keep = keep, .user = cache};
+    assay_status status = assay_basis_create(cache->context, ASSAY_BASIS_HSH, s->order,
+                                             ASSAY_CONVENTION_THESIS, &cache->hsh);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    cache->count = CHANNELS * assay_basis_count(cache->hsh);
+    cache->scratch =
+        assay_allocate(cache->context, (size_t)cache->workers, 2 * cache->count * sizeof(double));
+    if (!cache->scratch) {
+        return assay_fail_memory(cache->context, "the radiance cache");
+    }
+    const assay_radiance_turn_settings turning = {
+        .way      = s->rotation,
+        .steps    = s->rotation_steps,
+        .sh_order = s->sh_order,
+        .tilt_max = assay_record_tilt_max(&s->records.rules),
+    };
+    status = assay_irradiance_cache_create_beside(beside, &s->records, &companion, &cache->records);
+    return status ? status
+                  : assay_radiance_turn_create(cache->context, cache->hsh, &turning, cache->workers,
+                                               &cache->turn);
+}
+
+assay_status assay_radiance_cache_create(assay_context *context, assay_irradiance_cache *beside,
+                                         const assay_radiance_cache_settings *settings,
+                                         assay_radiance_cache               **cache_out)
+{
+    assay_radiance_cache *cache = assay_allocate(context, 1, sizeof *cache);
+    if (!cache) {
+        return assay_fail_memory(context, "the radiance cache");
+    }
+    cache->context                        = context;
+    cache->settings                       = *settings;
+    cache->workers                        = assay_context_threads(context);
+    cache->settings.records.layout.strata = ASSAY_STRATA_UNIFORM;
+    const assay_status status             = create_parts(cache, beside);
+    if (status != ASSAY_OK) {
+        assay_radiance_cache_destroy(cache);
+        return status;
+    }
+    *cache_out = cache;
+    return ASSAY_OK;
+}
+
+const assay_basis *assay_radiance_cache_basis(const assay_radiance_cache *cache)
+{
+    return cache->hsh;
+}
+
+assay_irradiance_cache *assay_radiance_cache_records(assay_radiance_cache *cache)
+{
+    return cache->records;
+}
+
+const double *assay_radiance_cache_coefficients(const assay_radiance_cache *cache, uint32_t number)
+{
+    assert(number < assay_record_store_count(assay_irradiance_cache_store(cache->records)));
+    return cache->coefficients + number * cache->count;
+}
+
+const assay_vec3 *assay_radiance_cache_gradients(const assay_radiance_cache *cache, uint32_t number)
+{
+    assert(number < assay_record_store_count(assay_irradiance_cache_store(cache->records)));
+    return has_gradients(cache) ? cache->gradients + number * cache->count : NULL;
+}
+
+/* ---- asking ---- */
+
+/* What the record says of the radiance at a position, in its own frame. */
+static void move(const assay_radiance_cache *cache, uint32_t number, const assay_frame3 *frame,
+                 assay_vec3 offset, double *moved)
+{
+    const double     *c = cache->coefficients + number * cache->count;
+    const assay_vec3 *g = has_gradients(cache) ? cache->gradients + number * cache->count : NULL;
+    const assay_vec3  local = frame3_to_local(frame, offset);
+    for (size_t i = 0; i < cache->count; i++) {
+        moved[i] = g ? c[i] + vec3_dot(g[i], local) : c[i];
+    }
+}
+
+static bool same(assay_vec3 a, assay_vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+assay_status assay_radiance_cache_look_up(assay_radiance_cache *cache, assay_vec3 position,
+                                          const assay_frame3 *frame, uint32_t limit, int worker,
+                                          double *coefficients_out, bool *found_out)
+{
+    const assay_record_store  *store = assay_irradiance_cache_store(cache->records);
+    const assay_frame3         here  = frame3_from_z(frame->z);
+    const assay_contributions *found = NULL;
+    double                    *sum   = cache->scratch + (size_t)worker * 2 * cache->count;
+    double                    *moved = sum + cache->count;
+    double                     total = 0.0;
+    assay_status               status =
+        assay_irradiance_cache_find(cache->records, position, frame->z, limit, worker, &found);
+    if (status != ASSAY_OK || found->count == 0) {
+        *found_out = status ? *found_out : false;
+        return status;
+    }
+    memset(sum, 0, cache->count * sizeof *sum);
+    for (size_t k = 0; k < found->count && status == ASSAY_OK; k++) {
+        const assay_contribution *item   = &found->items[k];
+        const assay_record       *record = assay_record_store_at(store, item->number);
+        const assay_frame3        there  = frame3_from_z(record->normal);
+        move(cache, item->number, &there, vec3_sub(position, record->position), moved);
+        if (!same(record->normal, frame->z)) {
+            status = assay_radiance_turn_apply(cache->turn, worker, &there, &here, moved);
+        }
+        /* A running mean, as assay_record_store_interpolate has. */
+        total += item->weight;
+        const double share = item->weight / total;
+        for (size_t i = 0; i < cache->count; i++) {
+            sum[i] += share * (moved[i] - sum[i]);
+        }
+    }
+    if (status == ASSAY_OK && !(same(here.x, frame->x) && same(here.y, frame->y))) {
+        status = assay_radiance_turn_apply(cache->turn, worker, &here, frame, sum);
+    }
+    if (status == ASSAY_OK) {
+        memcpy(coefficients_out, sum, cache->count * sizeof *sum);
+        *found_out = true;
+    }
+    return status;
+}
