@@ -1,6 +1,6 @@
 /* bench_caches.c - time to the same error: irradiance-cache against path.
  *
- *     bench_caches [ROUNDS]
+ *     bench_caches [VIEW [SETTINGS]]     part of a view's name; name=value,... of irradiance-cache
  *
  * On a view, irradiance-cache renders once, and path as often as it takes to know its cost: both on
  * one thread, by processor time.  The relative error of an image (docs/conventions.md, over all
@@ -18,26 +18,27 @@
 #include "assay/render.h"
 #include "core/numerics.h"
 
-enum { SIDE = 256, CHANNELS = 3, REFERENCE_SPP = 256 };
+enum { SIDE = 256, CHANNELS = 3, REFERENCE_SPP = 128 };
 
 typedef struct {
     const char *name, *scene, *camera;
-    int         bounces; /* 0: all */
-    const char *a, *spp, *theta, *phi, *r_min_pixels;
-    double      asked; /* ratio */
+    const char *bounces;  /* of both methods                       */
+    const char *settings; /* of irradiance-cache: name=value,...   */
+    double      asked;    /* times less time than path             */
 } view;
 
+#define CORNELL "./scenes/cornell-box/cornell-box.gltf"
+#define SPONZA "sponza_dabrovic/sponza_dabrovic.glb"
+#define FINE                                                                                       \
+    "estimator=nee,spp=64,a=0.15,theta_strata=8,phi_strata=25,r_min_pixels=3,secondary=cache,"     \
+    "levels=3"
+
 static const view VIEWS[] = {
-    {"Cornell box, all bounces", "scenes/cornell-box/cornell-box.gltf", NULL, 0, "0.3", "64", "16",
-     "50", "3", 25},
-    {"Cornell box, one bounce", "scenes/cornell-box/cornell-box.gltf", NULL, 2, "0.3", "64", "16",
-     "50", "3", 7},
-    {"Sponza, atrium", "sponza_dabrovic/sponza_dabrovic.glb", "atrium", 0, "0.3", "64", "16", "50",
-     "3", 15},
-    {"Sponza, atrium, one bounce", "sponza_dabrovic/sponza_dabrovic.glb", "atrium", 2, "0.3", "64",
-     "16", "50", "3", 9},
-    {"Sponza, lower arcade", "sponza_dabrovic/sponza_dabrovic.glb", "lower_arcade", 0, "0.3", "64",
-     "16", "50", "3", 60},
+    {"Cornell box, all bounces", CORNELL, NULL, "inf", FINE, 25},
+    {"Cornell box, one bounce", CORNELL, NULL, "2", FINE, 7},
+    {"Sponza, atrium", SPONZA, "atrium", "inf", FINE, 15},
+    {"Sponza, atrium, one bounce", SPONZA, "atrium", "2", FINE, 9},
+    {"Sponza, lower arcade", SPONZA, "lower_arcade", "inf", FINE, 60},
 };
 
 static double seconds(void)
@@ -66,8 +67,22 @@ static void set(assay_context *context, assay_params *params, const char *name, 
     require(context, assay_params_set(params, name, value));
 }
 
+/* name=value,name=value */
+static void set_all(assay_context *context, assay_params *params, const char *settings)
+{
+    while (*settings) {
+        char name[64], value[64];
+        int  length = 0;
+        if (sscanf(settings, "%63[^=]=%63[^,]%n", name, value, &length) != 2) {
+            exit(1);
+        }
+        set(context, params, name, value);
+        settings += length + (settings[length] == ',');
+    }
+}
+
 static result render(assay_context *context, assay_scene *scene, const view *v, const char *method,
-                     const char *spp, uint64_t seed)
+                     const char *settings, uint64_t seed)
 {
     assay_render_options options = assay_render_options_default();
     assay_params        *params  = NULL;
@@ -77,26 +92,8 @@ static result render(assay_context *context, assay_scene *scene, const view *v, 
     options.layers                 = "color";
     options.seed                   = seed;
     require(context, assay_method_params(context, method, &params));
-    set(context, params, "spp", spp);
-    if (v->bounces) {
-        char text[16];
-        snprintf(text, sizeof text, "%d", v->bounces);
-        set(context, params, "bounces", text);
-    }
-    if (strcmp(method, "path") != 0) {
-        set(context, params, "a", v->a);
-        set(context, params, "theta_strata", v->theta);
-        set(context, params, "phi_strata", v->phi);
-        set(context, params, "r_min_pixels", v->r_min_pixels);
-        set(context, params, "estimator", "nee");
-        for (char *o = getenv("BENCH_SET"); o && *o;) {
-            char name[64], value[64];
-            int  n = 0;
-            sscanf(o, "%63[^=]=%63[^,]%n", name, value, &n);
-            set(context, params, name, value);
-            o += n + (o[n] == ',');
-        }
-    }
+    set(context, params, "bounces", v->bounces);
+    set_all(context, params, settings);
     const double start = seconds();
     require(context, assay_render(scene, method, params, &options, &r.image, &r.stats));
     r.seconds = seconds() - start;
@@ -139,7 +136,7 @@ static double squared_error(const assay_image *image, const assay_image *one,
     return sum / (CHANNELS * SIDE * SIDE);
 }
 
-static void compare(assay_context *context, const view *v)
+static void compare(assay_context *context, const view *v, const char *settings)
 {
     char                path[512];
     assay_scene        *scene   = NULL;
@@ -156,9 +153,9 @@ static void compare(assay_context *context, const view *v)
         return;
     }
     require(context, assay_scene_load(context, path, &options, &scene));
-    const result cache = render(context, scene, v, "irradiance-cache", v->spp, 1);
+    const result cache = render(context, scene, v, "irradiance-cache", settings, 1);
     char         spp[16];
-    snprintf(spp, sizeof spp, "%d", REFERENCE_SPP);
+    snprintf(spp, sizeof spp, "spp=%d", REFERENCE_SPP);
     const result one = render(context, scene, v, "path", spp, 2);
     const result two = render(context, scene, v, "path", spp, 3);
     const double e   = squared_error(cache.image, one.image, two.image);
@@ -185,7 +182,7 @@ int main(int count, char **argv)
     }
     for (size_t i = 0; i < sizeof VIEWS / sizeof VIEWS[0]; i++) {
         if (count < 2 || strstr(VIEWS[i].name, argv[1])) {
-            compare(context, &VIEWS[i]);
+            compare(context, &VIEWS[i], count > 2 ? argv[2] : VIEWS[i].settings);
         }
     }
     assay_context_destroy(context);

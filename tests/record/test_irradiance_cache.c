@@ -206,16 +206,16 @@ static void waves_are_the_serial_algorithm(void **state)
 static void enough_is_the_sum_of_weights(void **state)
 {
     (void)state;
-    lit_world                       w        = wall_world(1);
-    assay_irradiance_cache_settings settings = settings_of(4, 12);
+    lit_world                       w        = lit_world_wall(1);
+    assay_irradiance_cache_settings settings = lit_settings(4, 12);
     settings.rules.a                         = 1.6;
     settings.r_max                           = 0.2;
-    assay_cache_point      *points           = floor_points();
+    assay_cache_point      *points           = lit_floor(1.0);
     assay_irradiance_cache *cache            = make_cache(&w, &settings);
     assay_contributions     found            = {0};
     size_t                  several          = 0;
-    assert_int_equal(fill(cache, POINTS, points, NULL), ASSAY_OK);
-    for (int i = 0; i < POINTS; i++) {
+    assert_int_equal(fill(cache, LIT_FLOOR_POINTS, points, NULL), ASSAY_OK);
+    for (int i = 0; i < LIT_FLOOR_POINTS; i++) {
         assert_int_equal(assay_record_store_find(assay_irradiance_cache_store(cache),
                                                  points[i].site.position, points[i].site.frame.z,
                                                  UINT32_MAX, &found),
@@ -227,7 +227,7 @@ static void enough_is_the_sum_of_weights(void **state)
     assay_contributions_release(&found);
     assay_irradiance_cache_destroy(cache);
     free(points);
-    close_world(&w);
+    lit_world_close(&w);
 }
 
 /* ---- options ---- */
