@@ -27,18 +27,17 @@ typedef struct {
     double      asked;    /* times less time than path             */
 } view;
 
-#define CORNELL "./scenes/cornell-box/cornell-box.gltf"
+#define CORNELL "scenes/cornell-box/cornell-box.gltf"
 #define SPONZA "sponza_dabrovic/sponza_dabrovic.glb"
 #define FINE                                                                                       \
-    "estimator=nee,spp=64,a=0.15,theta_strata=8,phi_strata=25,r_min_pixels=3,secondary=cache,"     \
-    "levels=3"
+    "estimator=nee,spp=64,a=0.2,theta_strata=16,phi_strata=50,secondary=cache,levels=4,r_min="
 
 static const view VIEWS[] = {
-    {"Cornell box, all bounces", CORNELL, NULL, "inf", FINE, 25},
-    {"Cornell box, one bounce", CORNELL, NULL, "2", FINE, 7},
-    {"Sponza, atrium", SPONZA, "atrium", "inf", FINE, 15},
-    {"Sponza, atrium, one bounce", SPONZA, "atrium", "2", FINE, 9},
-    {"Sponza, lower arcade", SPONZA, "lower_arcade", "inf", FINE, 60},
+    {"Cornell box, all bounces", CORNELL, NULL, "inf", FINE "0.02", 25},
+    {"Cornell box, one bounce", CORNELL, NULL, "2", FINE "0.02", 7},
+    {"Sponza, atrium", SPONZA, "atrium", "inf", FINE "0.3", 15},
+    {"Sponza, atrium, one bounce", SPONZA, "atrium", "2", FINE "0.3", 9},
+    {"Sponza, lower arcade", SPONZA, "lower_arcade", "inf", FINE "0.3", 60},
 };
 
 static double seconds(void)
