@@ -29,15 +29,14 @@ typedef struct {
 
 #define CORNELL "scenes/cornell-box/cornell-box.gltf"
 #define SPONZA "sponza_dabrovic/sponza_dabrovic.glb"
-#define FINE                                                                                       \
-    "estimator=nee,spp=64,a=0.2,theta_strata=16,phi_strata=50,secondary=cache,levels=4,r_min="
+#define FINE "estimator=nee,spp=64,a=0.3,theta_strata=16,phi_strata=50,secondary=cache,levels=4,"
 
 static const view VIEWS[] = {
-    {"Cornell box, all bounces", CORNELL, NULL, "inf", FINE "0.02", 25},
-    {"Cornell box, one bounce", CORNELL, NULL, "2", FINE "0.02", 7},
-    {"Sponza, atrium", SPONZA, "atrium", "inf", FINE "0.3", 15},
-    {"Sponza, atrium, one bounce", SPONZA, "atrium", "2", FINE "0.3", 9},
-    {"Sponza, lower arcade", SPONZA, "lower_arcade", "inf", FINE "0.3", 60},
+    {"Cornell box, all bounces", CORNELL, NULL, "inf", FINE "r_min=0.02,r_max=0.1", 25},
+    {"Cornell box, one bounce", CORNELL, NULL, "2", FINE "r_min=0.02,r_max=0.1", 7},
+    {"Sponza, atrium", SPONZA, "atrium", "inf", FINE "r_min=0.3,r_max=2", 15},
+    {"Sponza, atrium, one bounce", SPONZA, "atrium", "2", FINE "r_min=0.3,r_max=2", 9},
+    {"Sponza, lower arcade", SPONZA, "lower_arcade", "inf", FINE "r_min=0.3,r_max=2", 60},
 };
 
 static double seconds(void)

@@ -47,7 +47,7 @@ assay_status gltf_load_status(gltf_maker *maker, assay_context *context,
 assay_scene *gltf_load(gltf_maker *maker, assay_context *context);
 
 /* A whole text, loaded from memory. */
-assay_status gltf_load_text(assay_context *context, const char *text, assay_scene **scene_out);
+assay_status gltf_load_text(assay_context *context, const char *json, assay_scene **scene_out);
 
 /* A context with one thread; fails the test where there is none to be had. */
 assay_context *gltf_context(void);
