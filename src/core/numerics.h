@@ -50,10 +50,10 @@ typedef struct {
  * 2^-63; r is exact.  Within 2 units of the last place, of sine and cosine each. */
 static inline assay_sincos assay_sincos_turns(double x)
 {
-    if (!(fabs(x) < 0x1p52)) {
-        return (assay_sincos){0.0 * x, 1.0 + 0.0 * x}; /* whole turns; NaN is not made but kept */
+    const double t = 4.0 * (x - assay_floor(x + 0.5)); /* exact; NaN of what is not finite */
+    if (!(fabs(t) <= 4.5)) { /* 2, or a whole turn more where x + 0.5 was rounded */
+        return (assay_sincos){t, t};
     }
-    const double t       = 4.0 * (x - (double)(int64_t)x);
     const int    quarter = (int)(t + (t < 0.0 ? -0.5 : 0.5));
     const double r = t - quarter, z = r * r;
     double       sine = 0x1.aaec32af93359p-38;

@@ -59,7 +59,9 @@ assay_bsdf_view assay_bsdf_seen_from(const assay_bsdf *bsdf, assay_vec3 wo)
     view.specular = is_black(bsdf);
     view.scatters = view.wo.z >= ASSAY_HORIZON && !view.specular;
     if (bsdf->model == ASSAY_BSDF_METALLIC_ROUGHNESS && view.scatters) {
-        assay_metallic_roughness_view(&view);
+        view.specular = assay_metallic_roughness_view(bsdf, back, view.wo, &view.lobes);
+    } else {
+        view.lobes = (assay_bsdf_lobes){0};
     }
     return view;
 }

@@ -100,32 +100,32 @@ static void set_probabilities(lobes *l, bool back, double cos_o)
 
 static double at_most_one(double x) { return x < 1.0 ? x : 1.0; }
 
-void assay_metallic_roughness_view(assay_bsdf_view *view)
+bool assay_metallic_roughness_view(const assay_bsdf *bsdf, bool back, assay_vec3 wo,
+                                   assay_bsdf_lobes *lobes_out)
 {
-    const assay_bsdf *bsdf       = view->bsdf;
-    lobes            *l          = &view->lobes;
-    const double      dielectric = 1.0 - bsdf->metallic;
-    const double      f0         = assay_normal_reflectance(bsdf->ior);
-    const double      factor     = bsdf->specular_factor;
-    l->alpha                     = bsdf->roughness * bsdf->roughness;
-    l->metallic                  = bsdf->metallic;
-    l->base_color                = bsdf->base_color;
-    l->f0                        = rgb(at_most_one(f0 * bsdf->specular_color.r) * factor,
-                                       at_most_one(f0 * bsdf->specular_color.g) * factor,
-                                       at_most_one(f0 * bsdf->specular_color.b) * factor);
-    l->f90                       = factor;
-    l->diffuse   = rgb_scale(bsdf->base_color, dielectric * (1.0 - bsdf->transmission));
-    l->through   = rgb_scale(bsdf->base_color, dielectric * bsdf->transmission);
-    l->refracts  = bsdf->solid && bsdf->ior > 0.0;
-    l->matched   = l->refracts && fabs(bsdf->ior - 1.0) < INDEX_MATCHED;
-    l->smooth    = l->alpha < ASSAY_ALPHA_MIN;
-    l->transmits = !rgb_is_black(l->through);
-    l->eta       = !l->refracts || l->matched ? 1.0 : (view->back ? 1.0 / bsdf->ior : bsdf->ior);
-    l->masking   = l->smooth ? 0.0 : assay_ggx_masking(l->alpha, view->wo.z);
+    lobes       *l          = lobes_out;
+    const double dielectric = 1.0 - bsdf->metallic;
+    const double f0         = assay_normal_reflectance(bsdf->ior);
+    const double factor     = bsdf->specular_factor;
+    l->alpha                = bsdf->roughness * bsdf->roughness;
+    l->metallic             = bsdf->metallic;
+    l->base_color           = bsdf->base_color;
+    l->f0                   = rgb(at_most_one(f0 * bsdf->specular_color.r) * factor,
+                                  at_most_one(f0 * bsdf->specular_color.g) * factor,
+                                  at_most_one(f0 * bsdf->specular_color.b) * factor);
+    l->f90                  = factor;
+    l->diffuse              = rgb_scale(bsdf->base_color, dielectric * (1.0 - bsdf->transmission));
+    l->through              = rgb_scale(bsdf->base_color, dielectric * bsdf->transmission);
+    l->refracts             = bsdf->solid && bsdf->ior > 0.0;
+    l->matched              = l->refracts && fabs(bsdf->ior - 1.0) < INDEX_MATCHED;
+    l->smooth               = l->alpha < ASSAY_ALPHA_MIN;
+    l->transmits            = !rgb_is_black(l->through);
+    l->eta     = !l->refracts || l->matched ? 1.0 : (back ? 1.0 / bsdf->ior : bsdf->ior);
+    l->masking = l->smooth ? 0.0 : assay_ggx_masking(l->alpha, wo.z);
     const bool facets =
         l->metallic > 0.0 || (!l->matched && (l->f90 > 0.0 || l->transmits || l->refracts));
-    view->specular = rgb_is_black(l->diffuse) && (l->smooth || !facets);
-    set_probabilities(l, view->back, view->wo.z);
+    set_probabilities(l, back, wo.z);
+    return rgb_is_black(l->diffuse) && (l->smooth || !facets);
 }
 
 static assay_bsdf_value reflection(const lobes *l, assay_vec3 wo, assay_vec3 wi)

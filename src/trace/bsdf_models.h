@@ -19,7 +19,9 @@ typedef struct {
     assay_bsdf_value f;
 } assay_bsdf_choice;
 
-void             assay_metallic_roughness_view(assay_bsdf_view *view);
+/* Makes the lobes; true where all of them are specular. */
+bool             assay_metallic_roughness_view(const assay_bsdf *bsdf, bool back, assay_vec3 wo,
+                                               assay_bsdf_lobes *lobes_out);
 assay_bsdf_value assay_metallic_roughness_evaluate(const assay_bsdf_view *view, assay_vec3 wi);
 bool assay_metallic_roughness_choose(const assay_bsdf_view *view, double u_lobe, double u1,
                                      double u2, assay_bsdf_choice *choice_out);

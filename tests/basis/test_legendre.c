@@ -54,7 +54,7 @@ static void norms(void **state)
     double x[N + 1], weight[N + 1], p[COUNT], gram[N][N];
     assay_gauss_legendre_on(-1.0, 1.0, N + 1, x, weight);
     for (int m = 0; m < N; m++) {
-        double norm[N];
+        double norm[N] = {0.0};
         for (int l = m; l < N; l++) {
             norm[l] = 2.0 / (2 * l + 1);
             for (int k = l - m + 1; k <= l + m; k++) {

@@ -30,8 +30,9 @@ char *reference_file_bytes(const char *path, size_t *size_out)
         size += got;
         if (size == room) {
             room *= 2;
-            bytes = realloc(bytes, room + 1);
-            assert_non_null(bytes);
+            char *grown = realloc(bytes, room + 1);
+            assert_non_null(grown);
+            bytes = grown;
         }
     }
     assert_int_equal(ferror(file), 0);
