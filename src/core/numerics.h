@@ -50,11 +50,12 @@ typedef struct {
  * 2^-63; r is exact.  Within 2 units of the last place, of sine and cosine each. */
 static inline assay_sincos assay_sincos_turns(double x)
 {
-    const double t = 4.0 * (x - assay_floor(x + 0.5)); /* exact; NaN of what is not finite */
-    if (!(fabs(t) <= 4.5)) { /* 2, or a whole turn more where x + 0.5 was rounded */
+    const double turns = fabs(x);
+    const double t     = 4.0 * (turns - assay_floor(turns)); /* exact; NaN of what is not finite */
+    if (!(t <= 4.0)) {
         return (assay_sincos){t, t};
     }
-    const int    quarter = (int)(t + (t < 0.0 ? -0.5 : 0.5));
+    const int    quarter = (int)(t + 0.5);
     const double r = t - quarter, z = r * r;
     double       sine = 0x1.aaec32af93359p-38;
     sine              = sine * z - 0x1.6fadb9f155744p-31;
@@ -77,7 +78,7 @@ static inline assay_sincos assay_sincos_turns(double x)
     cosine            = cosine * z + 1.0;
     const bool   odd  = quarter & 1;
     const double a = odd ? cosine : sine, b = odd ? sine : cosine;
-    return (assay_sincos){quarter & 2 ? -a : a, (quarter + 1) & 2 ? -b : b};
+    return (assay_sincos){((quarter & 2) != 0) != (x < 0.0) ? -a : a, (quarter + 1) & 2 ? -b : b};
 }
 
 static inline assay_sincos assay_sincos_radians(double x)
