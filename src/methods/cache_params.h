@@ -47,7 +47,7 @@
      "[ward88]"},                                                                                 \
     {"mean", ASSAY_PARAM_CHOICE, "", "uniform", 0, 0, "uniform|cosine",                           \
      "Weight of directions in the harmonic mean distance R.",                                     \
-     "ERRATA T29"},                                                                               \
+     ""},                                                                                         \
     {"weight", ASSAY_PARAM_CHOICE, "", "ward", 0, 0, "ward|tabellion",                            \
      "Weight of a record.",                                                                       \
      "[gautron06] eq. 2.5, [tabellion04]"},                                                       \
@@ -77,7 +77,7 @@
      "[krivanek06]"},                                                                             \
     {"clamp_negative", ASSAY_PARAM_BOOL, "", "on", 0, 0, NULL,                                    \
      "What is extrapolated below 0 counts as 0.",                                                 \
-     "ERRATA T28"},                                                                               \
+     ""},                                                                                         \
     {"traversal", ASSAY_PARAM_CHOICE, "", "scanline", 0, 0, "scanline|hierarchical",              \
      "Order in which the pixels' centres ask for records.",                                       \
      "[ward88]"},                                                                                 \

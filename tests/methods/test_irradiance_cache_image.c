@@ -158,17 +158,6 @@ static void no_indirect_light(void **state)
 
 /* ---- passes, traversal, files ---- */
 
-static double difference(const assay_image *a, const assay_image *b, const char *name)
-{
-    assay_channel x, y;
-    double        sum = 0.0;
-    assert_true(assay_image_find_channel(a, name, &x) && assay_image_find_channel(b, name, &y));
-    for (int i = 0; i < SIZE * SIZE; i++) {
-        sum += fabs((double)x.data.f32[i] - y.data.f32[i]);
-    }
-    return sum;
-}
-
 /* One pass shows another image with the very same records; traversal and layers: layers change no
  * record, traversal does. */
 static void passes_and_traversal(void **state)
@@ -184,10 +173,10 @@ static void passes_and_traversal(void **state)
     assay_image *one  = render(scene, CACHE, once, NULL);
     assay_image *hier = render(scene, CACHE, coarse, NULL);
     assay_image *only = render(scene, CACHE, few, "color");
-    assert_true(difference(two, one, "IrradianceIndirect.G") > 0.0);
-    assert_true(difference(two, one, "IrradianceDirect.G") == 0.0);
-    assert_true(difference(two, hier, "IrradianceIndirect.G") > 0.0);
-    assert_true(difference(two, only, "G") == 0.0);
+    assert_true(measure_difference(two, one, "IrradianceIndirect.G") > 0.0);
+    assert_true(measure_difference(two, one, "IrradianceDirect.G") == 0.0);
+    assert_true(measure_difference(two, hier, "IrradianceIndirect.G") > 0.0);
+    assert_true(measure_difference(two, only, "G") == 0.0);
     assay_image_destroy(two);
     assay_image_destroy(one);
     assay_image_destroy(hier);
@@ -222,8 +211,8 @@ static void saved_caches(void **state)
                                 {NULL, NULL}};
         assay_image  *made   = render(scene, CACHE, out, NULL);
         assay_image  *loaded = render(scene, CACHE, in, NULL);
-        assert_true(difference(made, loaded, "G") == 0.0);
-        assert_true(difference(made, loaded, "IrradianceIndirect.R") == 0.0);
+        assert_true(measure_difference(made, loaded, "G") == 0.0);
+        assert_true(measure_difference(made, loaded, "IrradianceIndirect.R") == 0.0);
         assay_image_destroy(made);
         assay_image_destroy(loaded);
         char command[700];

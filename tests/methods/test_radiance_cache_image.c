@@ -280,17 +280,6 @@ static void rotations_against_exact(void **state)
 
 /* ---- which cache ---- */
 
-static double difference(const assay_image *a, const assay_image *b, const char *name)
-{
-    assay_channel x, y;
-    double        sum = 0.0;
-    assert_true(assay_image_find_channel(a, name, &x) && assay_image_find_channel(b, name, &y));
-    for (int i = 0; i < SIZE * SIZE; i++) {
-        sum += fabs((double)x.data.f32[i] - y.data.f32[i]);
-    }
-    return sum;
-}
-
 /* Out of reach, by the parameter or by kind, the light is that of irradiance-cache to the bit. */
 static void what_is_out_of_reach(void **state)
 {
@@ -314,7 +303,7 @@ static void what_is_out_of_reach(void **state)
             {"phi_strata", "38"},           {NULL, NULL}};
         assay_image *image    = render(scene, CACHE, more);
         assay_image *expected = render(scene, paths, NULL);
-        assert_true(difference(image, expected, "Indirect.G") == 0.0);
+        assert_true(measure_difference(image, expected, "Indirect.G") == 0.0);
         assay_image_destroy(image);
         assay_image_destroy(expected);
         assay_scene_destroy(scene);
@@ -380,8 +369,8 @@ static void passes(void **state)
     const setting  twice[] = {{"passes", "2"}, {"a", "0.1"}, {NULL, NULL}};
     assay_image   *two     = render(scene, QUICK, twice);
     assay_image   *one     = render(scene, QUICK, once);
-    assert_true(difference(one, two, "Indirect.G") > 0.0);
-    assert_true(difference(one, two, "Direct.G") == 0.0);
+    assert_true(measure_difference(one, two, "Indirect.G") > 0.0);
+    assert_true(measure_difference(one, two, "Direct.G") == 0.0);
     assay_image_destroy(one);
     assay_image_destroy(two);
     assay_scene_destroy(scene);

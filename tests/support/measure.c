@@ -88,6 +88,19 @@ measured measure_mean(const assay_image *image, const char *channel)
     return (measured){sum / (double)pixels, sqrt(squares) / (double)pixels};
 }
 
+double measure_difference(const assay_image *a, const assay_image *b, const char *channel)
+{
+    assay_channel x, y;
+    const size_t  pixels = (size_t)assay_image_width(a) * (size_t)assay_image_height(a);
+    double        sum    = 0.0;
+    assert_true(assay_image_find_channel(a, channel, &x));
+    assert_true(assay_image_find_channel(b, channel, &y));
+    for (size_t i = 0; i < pixels; i++) {
+        sum += fabs((double)x.data.f32[i] - y.data.f32[i]);
+    }
+    return sum;
+}
+
 assay_array *measure_probes(assay_scene *scene, const setting *settings, const double *points,
                             int count)
 {

@@ -24,6 +24,9 @@ assay_image *measure_render(assay_scene *scene, const setting *settings, int wid
 /* Mean over all pixels of a channel ("R", "Irradiance.G"), its error from "Variance.". */
 measured measure_mean(const assay_image *image, const char *channel);
 
+/* Sum over all pixels of |a - b| of a channel of two images of the same size. */
+double measure_difference(const assay_image *a, const assay_image *b, const char *channel);
+
 /* Probes at rows of x y z nx ny nz. */
 assay_array *measure_probes(assay_scene *scene, const setting *settings, const double *points,
                             int count);
