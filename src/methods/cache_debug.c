@@ -94,10 +94,12 @@ assay_status assay_cache_debug_paint(const assay_cache_debug *debug, assay_irrad
         return ASSAY_OK;
     }
     const assay_gather_site site = assay_gather_site_of(&point->vertex);
-    assay_rgb               e;
-    assay_status            status =
-        assay_irradiance_cache_look_up(cache, site.position, site.frame.z, limit, worker, &e);
-    found = assay_irradiance_cache_found(cache, worker);
+    assay_rgb               e    = rgb_grey(0.0);
+    const assay_status      status =
+        debug->kind == ASSAY_CACHE_DEBUG_ERROR
+                 ? assay_irradiance_cache_look_up(cache, site.position, site.frame.z, limit, worker, &e)
+                 : assay_irradiance_cache_find(cache, site.position, site.frame.z, limit, worker,
+                                               &found);
     if (status != ASSAY_OK) {
         return status;
     }

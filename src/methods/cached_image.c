@@ -52,6 +52,12 @@ typedef struct {
     uint64_t                           done, total; /* points, of the phase    */
 } image_job;
 
+assay_rgb assay_cached_point_lambert(const assay_cached_point *point)
+{
+    const assay_bsdf_view view = assay_bsdf_seen_from(&point->vertex.bsdf, point->vertex.wo_local);
+    return assay_bsdf_view_lambert(&view);
+}
+
 /* ---- the order ---- */
 
 static pixel_walk walk_start(int width, int height, assay_pixel_order order)

@@ -23,6 +23,9 @@ typedef struct {
     uint64_t     pixel;     /* row by row                           */
 } assay_cached_point;
 
+/* Albedo of the Lambertian part that the point shows (assay_bsdf_view_lambert). */
+assay_rgb assay_cached_point_lambert(const assay_cached_point *point);
+
 typedef struct {
     void *user;
     /* Makes the caches know enough at the points, in their order; limits_out: what had been made

@@ -463,12 +463,6 @@ assay_status assay_irradiance_cache_fill(assay_irradiance_cache *cache, const ch
 
 /* ---- what became of it ---- */
 
-const assay_contributions *assay_irradiance_cache_found(const assay_irradiance_cache *cache,
-                                                        int                           worker)
-{
-    return &cache->workers[worker].found;
-}
-
 assay_record_store *assay_irradiance_cache_store(assay_irradiance_cache *cache)
 {
     return cache->store;

@@ -89,10 +89,6 @@ assay_status assay_irradiance_cache_look_up(assay_irradiance_cache *cache, assay
                                             assay_vec3 normal, uint32_t limit, int worker,
                                             assay_rgb *irradiance_out);
 
-/* What the worker's last look-up found; borrowed until its next. */
-const assay_contributions *assay_irradiance_cache_found(const assay_irradiance_cache *cache,
-                                                        int                           worker);
-
 /* The first level's records; the next level, or NULL. */
 assay_record_store     *assay_irradiance_cache_store(assay_irradiance_cache *cache);
 assay_irradiance_cache *assay_irradiance_cache_next(const assay_irradiance_cache *cache);

@@ -98,12 +98,6 @@ static assay_status prepare(void *state, const assay_frame *frame)
 
 /* ---- light for the image ---- */
 
-static assay_rgb lambert_of(const assay_cached_point *point)
-{
-    const assay_bsdf_view view = assay_bsdf_seen_from(&point->vertex.bsdf, point->vertex.wo_local);
-    return assay_bsdf_view_lambert(&view);
-}
-
 static assay_status fill(void *user, const char *phase, uint64_t before, uint64_t total,
                          size_t count, const assay_cached_point *points, uint32_t *limits_out)
 {
@@ -116,10 +110,11 @@ static assay_status fill(void *user, const char *phase, uint64_t before, uint64_
     for (size_t i = 0; i < count; i++) {
         s->points[i] = (assay_cache_point){0};
         if (points[i].hit) {
-            s->points[i] = (assay_cache_point){.site      = assay_gather_site_of(&points[i].vertex),
-                                               .footprint = points[i].footprint,
-                                               .wanted    = points[i].centre ||
-                                                         !rgb_is_black(lambert_of(&points[i]))};
+            s->points[i] = (assay_cache_point){
+                .site      = assay_gather_site_of(&points[i].vertex),
+                .footprint = points[i].footprint,
+                .wanted =
+                    points[i].centre || !rgb_is_black(assay_cached_point_lambert(&points[i]))};
         }
     }
     return assay_irradiance_cache_fill(s->cache, phase, before, total, count, s->points,
@@ -140,7 +135,7 @@ static assay_status radiance(void *user, const assay_cached_point *point, uint32
                              assay_rgb *radiance_out)
 {
     const cache_state *s       = user;
-    const assay_rgb    lambert = lambert_of(point);
+    const assay_rgb    lambert = assay_cached_point_lambert(point);
     assay_rgb          sum     = rgb_grey(0.0);
     if (!rgb_is_black(lambert)) {
         const assay_status status = irradiance(user, point, limit, worker, &sum);

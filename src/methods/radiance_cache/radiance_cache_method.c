@@ -183,12 +183,6 @@ static assay_status prepare(void *state, const assay_frame *frame)
 
 /* ---- filling ---- */
 
-static assay_rgb lambert_of(const assay_cached_point *point)
-{
-    const assay_bsdf_view view = assay_bsdf_seen_from(&point->vertex.bsdf, point->vertex.wo_local);
-    return assay_bsdf_view_lambert(&view);
-}
-
 static const assay_material_grids *grids_at(const cache_state *s, const assay_cached_point *point)
 {
     return s->radiance && point->hit ? glossy_materials_at(&s->materials, &point->vertex) : NULL;
@@ -217,10 +211,11 @@ static assay_status fill(void *user, const char *phase, uint64_t before, uint64_
     for (size_t i = 0; i < count && status == ASSAY_OK; i++) {
         s->points[i] = (assay_cache_point){0};
         if (points[i].hit) {
-            s->points[i] = (assay_cache_point){.site      = assay_gather_site_of(&points[i].vertex),
-                                               .footprint = points[i].footprint,
-                                               .wanted    = points[i].centre ||
-                                                         !rgb_is_black(lambert_of(&points[i]))};
+            s->points[i] = (assay_cache_point){
+                .site      = assay_gather_site_of(&points[i].vertex),
+                .footprint = points[i].footprint,
+                .wanted =
+                    points[i].centre || !rgb_is_black(assay_cached_point_lambert(&points[i]))};
         }
     }
     status = status ? status
@@ -304,7 +299,7 @@ static assay_status radiance(void *user, const assay_cached_point *point, uint32
     const cache_state          *s       = user;
     const made_so_far           made    = made_within(s, limit);
     const assay_material_grids *grids   = grids_at(s, point);
-    const assay_rgb             lambert = lambert_of(point);
+    const assay_rgb             lambert = assay_cached_point_lambert(point);
     assay_rgb                   sum = rgb_grey(0.0), rest = rgb_grey(0.0);
     assay_status                status = ASSAY_OK;
     bool                        found  = false;
