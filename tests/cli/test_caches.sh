@@ -42,6 +42,23 @@ good_caches() { # METHOD SCENE SETTINGS ARRAY: the files are named after the met
 }
 good_caches irradiance-cache $box "$few" records/irradiance
 good_caches radiance-cache $shiny "$glossy" radiance_records/coefficient_gradient
+# ---- frames ----
+run render $box $few -o "$folder/frame-#.exr" --frames 0:1 --cache-out "$folder/frames"
+went_well && "$assay" diff "$folder/irradiance-cache-made.exr" "$folder/frame-0.exr" > /dev/null &&
+    "$assay" diff "$folder/irradiance-cache-loaded.exr" "$folder/frame-1.exr" > /dev/null &&
+    [ -f "$folder/frames/manifest.json" ]
+result $? "a frame begins with the records of the one before"
+moving="scenes/animated/animated.gltf $few --size 8x8"
+run render $moving -o "$folder/moving-#.exr" --frames 0:1 --fps 1
+went_well && "$assay" render $moving -o "$folder/alone.exr" --time 1 &&
+    "$assay" diff "$folder/moving-1.exr" "$folder/alone.exr" > /dev/null
+result $? "and with none where things move"
+"$assay" render $moving -o "$folder/a.exr" --cache-out "$folder/moved"
+refuses "a cache of another time, where things move" 2 "scene.moment" render $moving \
+    -o "$out/a.exr" --time 1 --cache-in "$folder/moved"
+accepts "where nothing moves, times are the same" render $box $few -o "$folder/a.exr" --time 1 \
+    --cache-in "$folder/irradiance-cache"
+
 cache=$folder/irradiance-cache
 lights=$folder/radiance-cache
 
