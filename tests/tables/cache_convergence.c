@@ -15,10 +15,14 @@
 
 #include "assay/render.h"
 
-enum { SIDE = 48, CHANNELS = 3, ACCURACIES = 4, CELLS = 3 };
+enum { SIDE = 48, CHANNELS = 3, ACCURACIES = 4, COLUMNS = 4 };
 
 static const char *const ACCURACY[ACCURACIES] = {"0.4", "0.2", "0.1", "0.05"};
-static const char *const THETA[CELLS] = {"8", "16", "32"}, *const PHI[CELLS] = {"25", "50", "100"};
+
+static const struct {
+    const char *theta, *phi, *gradient_limit;
+} COLUMN[COLUMNS] = {
+    {"8", "25", "off"}, {"16", "50", "off"}, {"32", "100", "off"}, {"16", "50", "on"}};
 
 typedef struct {
     const char *name, *method, *scene, *camera;
@@ -97,15 +101,16 @@ static assay_image *render_path(const study *s, uint64_t seed)
     return render(s, "path", params, seed, &records);
 }
 
-static assay_image *render_cached(const study *s, int accuracy, int cells, uint64_t *records_out)
+static assay_image *render_cached(const study *s, int accuracy, int column, uint64_t *records_out)
 {
     assay_params *params = NULL;
     require(s->context, assay_method_params(s->context, s->about->method, &params));
     set(s, params, "spp", "16");
     set(s, params, "bounces", s->about->bounces);
     set(s, params, "a", ACCURACY[accuracy]);
-    set(s, params, "theta_strata", THETA[cells]);
-    set(s, params, "phi_strata", PHI[cells]);
+    set(s, params, "theta_strata", COLUMN[column].theta);
+    set(s, params, "phi_strata", COLUMN[column].phi);
+    set(s, params, "gradient_limit", COLUMN[column].gradient_limit);
     return render(s, s->about->method, params, 1, records_out);
 }
 
@@ -195,23 +200,24 @@ static bool open_study(study *s)
     return true;
 }
 
-static void print_table(const study *s, const table *about, assay_image *const images[][CELLS],
-                        uint64_t records[][CELLS])
+static void print_table(const study *s, const table *about, assay_image *const images[][COLUMNS],
+                        uint64_t records[][COLUMNS])
 {
     printf("%s, %s, %s\n\n| a | records |", about->name, about->method, about->layer);
-    for (int m = 0; m < CELLS; m++) {
-        printf(" %s x %s |", THETA[m], PHI[m]);
+    for (int m = 0; m < COLUMNS; m++) {
+        printf(" %s x %s%s |", COLUMN[m].theta, COLUMN[m].phi,
+               strcmp(COLUMN[m].gradient_limit, "on") == 0 ? ", gradient_limit" : "");
     }
-    printf(" not told from 0 |\n|---|---|---|---|---|---|\n");
+    printf(" not told from 0 |\n|---|---|---|---|---|---|---|\n");
     for (int k = 0; k < ACCURACIES; k++) {
         verdict v = {0};
-        printf("| %s | %llu ... %llu |", ACCURACY[k], (unsigned long long)records[k][0],
-               (unsigned long long)records[k][CELLS - 1]);
-        for (int m = 0; m < CELLS; m++) {
+        printf("| %s | %llu, %llu |", ACCURACY[k], (unsigned long long)records[k][2],
+               (unsigned long long)records[k][COLUMNS - 1]);
+        for (int m = 0; m < COLUMNS; m++) {
             v = judge(s, about, images[k][m]);
-            printf(" %.4f (%+.2f %%) |", v.error, 100.0 * v.bias);
+            printf(" %.3f (%+.1f %%) |", v.error, 100.0 * v.bias);
         }
-        printf(" %.4f |\n", v.unseen);
+        printf(" %.3f |\n", v.unseen);
     }
     printf("\n");
     fflush(stdout);
@@ -220,23 +226,23 @@ static void print_table(const study *s, const table *about, assay_image *const i
 /* All tables of the first one's scene and method. */
 static void work_on(study *s, const table *first, const char *wanted)
 {
-    assay_image *images[ACCURACIES][CELLS]  = {{NULL}};
-    uint64_t     records[ACCURACIES][CELLS] = {{0}};
+    assay_image *images[ACCURACIES][COLUMNS]  = {{NULL}};
+    uint64_t     records[ACCURACIES][COLUMNS] = {{0}};
     if (!open_study(s)) {
         return;
     }
     for (int k = 0; k < ACCURACIES; k++) {
-        for (int m = 0; m < CELLS; m++) {
+        for (int m = 0; m < COLUMNS; m++) {
             images[k][m] = render_cached(s, k, m, &records[k][m]);
         }
     }
     for (const table *t = first; t < TABLES + TABLE_COUNT; t++) {
         if (same_scene(t, first) && strstr(t->name, wanted)) {
-            print_table(s, t, (assay_image *const(*)[CELLS])images, records);
+            print_table(s, t, (assay_image *const(*)[COLUMNS])images, records);
         }
     }
     for (int k = 0; k < ACCURACIES; k++) {
-        for (int m = 0; m < CELLS; m++) {
+        for (int m = 0; m < COLUMNS; m++) {
             assay_image_destroy(images[k][m]);
         }
     }
