@@ -203,7 +203,8 @@ static bool open_study(study *s)
 static void print_table(const study *s, const table *about, assay_image *const images[][COLUMNS],
                         uint64_t records[][COLUMNS])
 {
-    printf("%s, %s, %s\n\n| a | records |", about->name, about->method, about->layer);
+    printf("%s, %s, %s\n\n| a | records, with the limit |", about->name, about->method,
+           about->layer);
     for (int m = 0; m < COLUMNS; m++) {
         printf(" %s x %s%s |", COLUMN[m].theta, COLUMN[m].phi,
                strcmp(COLUMN[m].gradient_limit, "on") == 0 ? ", gradient_limit" : "");
