@@ -36,7 +36,7 @@ typedef struct {
 #define CORNELL "scenes/cornell-box/cornell-box.gltf"
 #define GLOSSY "scenes/cornell-box-glossy/cornell-box-glossy.gltf"
 #define SPONZA "sponza_dabrovic/sponza_dabrovic.glb"
-#define ROOM "bitterli_classroom/bitterli_classroom.glb"
+#define KITCHEN "lux_kitchen/lux_kitchen.glb"
 
 static const table TABLES[] = {
     {"Cornell box", "irradiance-cache", CORNELL, NULL, "inf", "1024", "IrradianceIndirect", -1,
@@ -45,8 +45,8 @@ static const table TABLES[] = {
     {"Sponza, atrium", "irradiance-cache", SPONZA, "atrium", "inf", "1024", "IrradianceIndirect",
      -1, true},
     {"Sponza, atrium", "irradiance-cache", SPONZA, "atrium", "inf", "1024", "Indirect", -1, true},
-    {"Classroom", "irradiance-cache", ROOM, NULL, "inf", "1024", "IrradianceIndirect", -1, true},
-    {"Classroom", "irradiance-cache", ROOM, NULL, "inf", "1024", "Indirect", -1, true},
+    {"Kitchen", "irradiance-cache", KITCHEN, NULL, "inf", "1024", "IrradianceIndirect", -1, true},
+    {"Kitchen", "irradiance-cache", KITCHEN, NULL, "inf", "1024", "Indirect", -1, true},
     {"Glossy box, its wall", "radiance-cache", GLOSSY, NULL, "inf", "2048", "Indirect", 4, false},
     {"Glossy box, all of it", "radiance-cache", GLOSSY, NULL, "inf", "2048", "Indirect", -1, false},
 };
