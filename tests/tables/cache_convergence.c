@@ -1,7 +1,7 @@
 /* cache_convergence.c - the tables of docs/methods/irradiance-cache.md and radiance-cache.md: error
  * of both caching methods against `path` with the same bounces, by accuracy a and by cells M.
  *
- *     cache_convergence [NAME]     part of a table's name
+ *     cache_convergence [NAME [A ...]]     part of a table's name; accuracies
  *
  * The relative error (docs/conventions.md, all channels) of an image x is taken against two
  * independent images by path, a and b: the mean of (x - a)(x - b) is free of their noise.  What is
@@ -15,9 +15,9 @@
 
 #include "assay/render.h"
 
-enum { SIDE = 48, CHANNELS = 3, ACCURACIES = 5, COLUMNS = 4 };
+enum { SIDE = 48, CHANNELS = 3, MOST_ACCURACIES = 8, COLUMNS = 4 };
 
-static const char *const ACCURACY[ACCURACIES] = {"0.4", "0.2", "0.15", "0.1", "0.05"};
+static const char *const ACCURACY[] = {"0.4", "0.2", "0.1", "0.05"};
 
 static const struct {
     const char *theta, *phi, *gradient_limit;
@@ -44,11 +44,11 @@ static const table TABLES[] = {
     {"Cornell box", "irradiance-cache", CORNELL, NULL, "inf", "1024", "Indirect", -1, true},
     {"Cornell box, one bounce", "irradiance-cache", CORNELL, NULL, "2", "1024",
      "IrradianceIndirect", -1, true},
-    {"Sponza, atrium", "irradiance-cache", SPONZA, "atrium", "inf", "1024", "IrradianceIndirect",
-     -1, true},
-    {"Sponza, atrium", "irradiance-cache", SPONZA, "atrium", "inf", "1024", "Indirect", -1, true},
-    {"Kitchen", "irradiance-cache", KITCHEN, NULL, "inf", "1024", "IrradianceIndirect", -1, true},
-    {"Kitchen", "irradiance-cache", KITCHEN, NULL, "inf", "1024", "Indirect", -1, true},
+    {"Sponza, atrium", "irradiance-cache", SPONZA, "atrium", "inf", "512", "IrradianceIndirect", -1,
+     true},
+    {"Sponza, atrium", "irradiance-cache", SPONZA, "atrium", "inf", "512", "Indirect", -1, true},
+    {"Kitchen", "irradiance-cache", KITCHEN, NULL, "inf", "512", "IrradianceIndirect", -1, true},
+    {"Kitchen", "irradiance-cache", KITCHEN, NULL, "inf", "512", "Indirect", -1, true},
     {"Glossy box, its wall", "radiance-cache", GLOSSY, NULL, "inf", "2048", "Indirect", 4, false},
     {"Glossy box, all of it", "radiance-cache", GLOSSY, NULL, "inf", "2048", "Indirect", -1, false},
 };
@@ -70,6 +70,8 @@ typedef struct {
     assay_scene   *scene;
     const table   *about;
     assay_image   *reference[2];
+    int            rows; /* accuracies */
+    const char   **accuracy;
 } study;
 
 static void set(const study *s, assay_params *params, const char *name, const char *value)
@@ -85,8 +87,9 @@ static assay_image *render(const study *s, const char *method, assay_params *par
     assay_image         *image = NULL;
     options.width = options.height = SIDE;
     options.camera                 = s->about->camera;
-    options.layers                 = "split,irradiance,gbuffer";
-    options.seed                   = seed;
+    options.layers = strcmp(s->about->method, "radiance-cache") == 0 ? "split,gbuffer"
+                                                                     : "split,irradiance,gbuffer";
+    options.seed   = seed;
     require(s->context, assay_render(s->scene, method, params, &options, &image, &stats));
     *records_out = stats.records;
     assay_params_destroy(params);
@@ -103,13 +106,13 @@ static assay_image *render_path(const study *s, uint64_t seed)
     return render(s, "path", params, seed, &records);
 }
 
-static assay_image *render_cached(const study *s, int accuracy, int column, uint64_t *records_out)
+static assay_image *render_cached(const study *s, int row, int column, uint64_t *records_out)
 {
     assay_params *params = NULL;
     require(s->context, assay_method_params(s->context, s->about->method, &params));
     set(s, params, "spp", "16");
     set(s, params, "bounces", s->about->bounces);
-    set(s, params, "a", ACCURACY[accuracy]);
+    set(s, params, "a", s->accuracy[row]);
     set(s, params, "theta_strata", COLUMN[column].theta);
     set(s, params, "phi_strata", COLUMN[column].phi);
     set(s, params, "gradient_limit", COLUMN[column].gradient_limit);
@@ -213,9 +216,9 @@ static void print_table(const study *s, const table *about, assay_image *const i
                strcmp(COLUMN[m].gradient_limit, "on") == 0 ? ", gradient_limit" : "");
     }
     printf(" not told from 0 |\n|---|---|---|---|---|---|---|\n");
-    for (int k = 0; k < ACCURACIES; k++) {
+    for (int k = 0; k < s->rows; k++) {
         verdict v = {0};
-        printf("| %s | %llu, %llu |", ACCURACY[k], (unsigned long long)records[k][2],
+        printf("| %s | %llu, %llu |", s->accuracy[k], (unsigned long long)records[k][2],
                (unsigned long long)records[k][COLUMNS - 1]);
         for (int m = 0; m < COLUMNS; m++) {
             v = judge(s, about, images[k][m]);
@@ -230,12 +233,12 @@ static void print_table(const study *s, const table *about, assay_image *const i
 /* All tables of the first one's scene, method and bounces. */
 static void work_on(study *s, const table *first, const char *wanted)
 {
-    assay_image *images[ACCURACIES][COLUMNS]  = {{NULL}};
-    uint64_t     records[ACCURACIES][COLUMNS] = {{0}};
+    assay_image *images[MOST_ACCURACIES][COLUMNS]  = {{NULL}};
+    uint64_t     records[MOST_ACCURACIES][COLUMNS] = {{0}};
     if (!open_study(s)) {
         return;
     }
-    for (int k = 0; k < ACCURACIES; k++) {
+    for (int k = 0; k < s->rows; k++) {
         for (int m = 0; m < COLUMNS; m++) {
             images[k][m] = render_cached(s, k, m, &records[k][m]);
         }
@@ -245,7 +248,7 @@ static void work_on(study *s, const table *first, const char *wanted)
             print_table(s, t, (assay_image *const(*)[COLUMNS])images, records);
         }
     }
-    for (int k = 0; k < ACCURACIES; k++) {
+    for (int k = 0; k < s->rows; k++) {
         for (int m = 0; m < COLUMNS; m++) {
             assay_image_destroy(images[k][m]);
         }
@@ -260,6 +263,14 @@ int main(int count, char **argv)
     const assay_context_options options = {.threads = 1};
     const char                 *wanted  = count > 1 ? argv[1] : "";
     assay_context              *context = NULL;
+    const char                 *accuracy[MOST_ACCURACIES];
+    int                         rows = 0;
+    for (int i = 2; i < count && rows < MOST_ACCURACIES; i++) {
+        accuracy[rows++] = argv[i];
+    }
+    for (size_t i = 0; i < sizeof ACCURACY / sizeof ACCURACY[0] && count <= 2; i++) {
+        accuracy[rows++] = ACCURACY[i];
+    }
     if (assay_context_create(&options, &context) != ASSAY_OK) {
         return 1;
     }
@@ -267,7 +278,7 @@ int main(int count, char **argv)
         const bool done =
             i > 0 && same_scene(&TABLES[i], &TABLES[i - 1]) && strstr(TABLES[i - 1].name, wanted);
         if (strstr(TABLES[i].name, wanted) && !done) {
-            study s = {.context = context, .about = &TABLES[i]};
+            study s = {.context = context, .about = &TABLES[i], .rows = rows, .accuracy = accuracy};
             work_on(&s, &TABLES[i], wanted);
         }
     }
