@@ -29,14 +29,16 @@ typedef struct {
 
 #define CORNELL "scenes/cornell-box/cornell-box.gltf"
 #define SPONZA "sponza_dabrovic/sponza_dabrovic.glb"
-#define FINE "estimator=nee,spp=64,a=0.3,theta_strata=16,phi_strata=50,secondary=cache,levels=4,"
+#define CACHES "estimator=nee,secondary=cache,gradient_limit=on,"
+#define BOX CACHES "spp=64,a=0.25,theta_strata=16,phi_strata=50,levels=4,r_min=0.06"
+#define HALL CACHES "spp=32,a=0.3,theta_strata=8,phi_strata=25,levels=3,r_min=2"
 
 static const view VIEWS[] = {
-    {"Cornell box, all bounces", CORNELL, NULL, "inf", FINE "r_min=0.02,r_max=0.1", 25},
-    {"Cornell box, one bounce", CORNELL, NULL, "2", FINE "r_min=0.02,r_max=0.1", 7},
-    {"Sponza, atrium", SPONZA, "atrium", "inf", FINE "r_min=0.3,r_max=2", 15},
-    {"Sponza, atrium, one bounce", SPONZA, "atrium", "2", FINE "r_min=0.3,r_max=2", 9},
-    {"Sponza, lower arcade", SPONZA, "lower_arcade", "inf", FINE "r_min=0.3,r_max=2", 60},
+    {"Cornell box, all bounces", CORNELL, NULL, "inf", BOX, 25},
+    {"Cornell box, one bounce", CORNELL, NULL, "2", BOX, 7},
+    {"Sponza, atrium", SPONZA, "atrium", "inf", HALL, 15},
+    {"Sponza, atrium, one bounce", SPONZA, "atrium", "2", HALL, 9},
+    {"Sponza, lower arcade", SPONZA, "lower_arcade", "inf", HALL, 60},
 };
 
 static double seconds(void)
