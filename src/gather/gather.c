@@ -5,6 +5,7 @@
 #include "gather/gather.h"
 
 #include "core/parallel.h"
+#include "gather/gather_raster.h"
 
 /* Rays of one piece of work: enough to pay for handing it out. */
 enum { CHUNK = 32 };
@@ -78,6 +79,9 @@ static assay_status look_at_chunk(void *user, uint64_t chunk, int worker)
 assay_status assay_gather(const assay_gatherer *gatherer, const assay_gather_site *site,
                           uint64_t item, assay_hemisphere *hemisphere)
 {
+    if (hemisphere->layout.strata == ASSAY_STRATA_PLANE) {
+        return gather_raster(gatherer, site, item, hemisphere);
+    }
     const uint64_t cells   = (uint64_t)hemisphere->layout.theta * (uint64_t)hemisphere->layout.phi;
     gather_job     job     = {gatherer, site, item, hemisphere};
     assay_context *context = gatherer->world->scene->context;
