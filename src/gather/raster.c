@@ -10,8 +10,9 @@
 #include "core/parallel.h"
 #include "gather/raster_triangle.h"
 
-/* Triangles of one piece of work. */
-enum { CHUNK = 2048 };
+/* Triangles of one piece of work; more pixels than these are drawn by one worker, for the others'
+ * buffers would be large. */
+enum { CHUNK = 2048, MOST_SHARED = 1 << 18 };
 
 /* A pixel's breadth that bounds are widened by, above the rounding of w >= 2^-30 of the largest
  * coordinate. */
@@ -268,14 +269,19 @@ assay_status assay_raster_draw(const assay_scene *scene, const assay_raster_view
         return status;
     }
     const uint64_t chunks = ((uint64_t)scene->triangle_count + CHUNK - 1) / CHUNK;
-    const size_t   others = chunks > 1 ? (size_t)assay_context_threads(scene->context) - 1 : 0;
-    raster_job     job    = {.scene   = scene,
-                             .view    = view,
-                             .samples = samples,
-                             .pixels  = (size_t)view->columns * (size_t)view->rows};
-    status                = open_job(&job, others)
-                                ? assay_parallel_for(scene->context, NULL, chunks, draw_chunk, &job)
-                                : assay_fail_memory(scene->context, "the buffers of a rasteriser");
+    const size_t   pixels = (size_t)view->columns * (size_t)view->rows;
+    const bool     shared = chunks > 1 && pixels <= MOST_SHARED;
+    const size_t   others = shared ? (size_t)assay_context_threads(scene->context) - 1 : 0;
+    raster_job     job    = {.scene = scene, .view = view, .samples = samples, .pixels = pixels};
+    if (!open_job(&job, others)) {
+        status = assay_fail_memory(scene->context, "the buffers of a rasteriser");
+    } else if (shared) {
+        status = assay_parallel_for(scene->context, NULL, chunks, draw_chunk, &job);
+    } else {
+        for (uint64_t i = 0; i < chunks; i++) {
+            (void)draw_chunk(&job, i, 0);
+        }
+    }
     for (size_t i = 0; i < others * job.pixels && status == ASSAY_OK; i++) {
         const assay_raster_sample *other = &job.others[i];
         if (comes_before(other->depth, other->triangle, &samples[i % job.pixels])) {
