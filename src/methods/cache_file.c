@@ -9,10 +9,24 @@
 #include "record/record_bundle.h"
 
 /* What the records' light depends on. */
-enum { KEY_COUNT = 5, TEXT_SIZE = 80 };
+enum { KEY_COUNT = 6, TEXT_SIZE = 80 };
 
-static const char *const KEYS[KEY_COUNT] = {"content", "scene.digest", "scene.time", "bounces",
-                                            "secondary"};
+static const char *const KEYS[KEY_COUNT] = {"content", "scene.digest", "scene.time",
+                                            "bounces", "secondary",    "gather"};
+
+/* A plane's view and shadow maps leave their mark; the number of cells is a matter of noise. */
+static void describe_gathering(const assay_irradiance_cache_settings *settings,
+                               char                                   text[TEXT_SIZE])
+{
+    static const char *const missing[] = {"plane", "ratio", "border", "border-corrected"};
+    const char              *shadow    = settings->shadow == ASSAY_SHADOW_MAP ? " shadow=map" : "";
+    if (settings->layout.strata == ASSAY_STRATA_PLANE) {
+        snprintf(text, TEXT_SIZE, "raster %.17g %s%s", settings->layout.fov,
+                 missing[settings->layout.missing], shadow);
+    } else {
+        snprintf(text, TEXT_SIZE, "rays%s", shadow);
+    }
+}
 
 static void describe(const assay_frame *frame, const assay_irradiance_cache_settings *settings,
                      char values[KEY_COUNT][TEXT_SIZE])
@@ -28,6 +42,7 @@ static void describe(const assay_frame *frame, const assay_irradiance_cache_sett
         snprintf(values[3], TEXT_SIZE, "%d", settings->path.bounces);
     }
     snprintf(values[4], TEXT_SIZE, "%s", secondary[settings->secondary]);
+    describe_gathering(settings, values[5]);
 }
 
 static void prefix_of(int level, char prefix[TEXT_SIZE])

@@ -116,7 +116,9 @@ assay_status assay_radiance_cache_create(assay_context *context, assay_irradianc
     cache->context                        = context;
     cache->settings                       = *settings;
     cache->workers                        = assay_context_threads(context);
-    cache->settings.records.layout.strata = ASSAY_STRATA_UNIFORM;
+    if (settings->records.layout.strata != ASSAY_STRATA_PLANE) {
+        cache->settings.records.layout.strata = ASSAY_STRATA_UNIFORM;
+    }
     const assay_status status             = create_parts(cache, beside);
     if (status != ASSAY_OK) {
         assay_radiance_cache_destroy(cache);
