@@ -85,7 +85,7 @@ assay_status gather_raster(const assay_gatherer *gatherer, const assay_gather_si
     if (!samples) {
         return assay_fail_memory(context, "a rasterised hemisphere");
     }
-    assay_status status = assay_raster_draw(world->scene, &job.view, samples);
+    assay_status status = assay_raster_draw(world, &job.view, samples);
     if (status == ASSAY_OK) {
         status = assay_parallel_for(context, NULL, (count + CHUNK - 1) / CHUNK, shade_chunk,
                                     (void *)&job);

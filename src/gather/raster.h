@@ -34,7 +34,7 @@ typedef struct {
 /* Fills samples[j * columns + i].  Surfaces are seen from both sides; where a material has a mask
  * or blends, what covers less than a half is not there.
  * Errors: ARGUMENT (sizes, half, near), MEMORY. */
-assay_status assay_raster_draw(const assay_scene *scene, const assay_raster_view *view,
+assay_status assay_raster_draw(const assay_world *world, const assay_raster_view *view,
                                assay_raster_sample *samples);
 
 /* The middle of a pixel on the plane. */

@@ -20,6 +20,9 @@ static raster_corner corner_at(const assay_raster_view *view, const float *p)
     return (raster_corner){v.x, v.y, v.z, view->parallel ? 1.0 : v.z};
 }
 
+/* fmax is a call, as it must see to NaN. */
+static double larger(double a, double b) { return a > b ? a : b; }
+
 void raster_triangle_load(const assay_scene *scene, const assay_raster_view *view,
                           uint32_t triangle, raster_triangle *out)
 {
@@ -28,7 +31,7 @@ void raster_triangle_load(const assay_scene *scene, const assay_raster_view *vie
     for (int i = 0; i < 3; i++) {
         raster_corner *p = &out->corner[i];
         *p               = corner_at(view, scene->positions + (size_t)index[i] * 3);
-        largest          = fmax(largest, fmax(fabs(p->x), fmax(fabs(p->y), fabs(p->z))));
+        largest          = larger(largest, larger(fabs(p->x), larger(fabs(p->y), fabs(p->z))));
     }
     out->tolerance = MISS * largest;
     out->triangle  = triangle;

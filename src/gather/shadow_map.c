@@ -96,7 +96,7 @@ static assay_status draw(assay_shadow_maps *maps, shadow_map *map, assay_raster_
 {
     const assay_scene *scene  = maps->world->scene;
     const size_t       count  = (size_t)maps->settings.side * (size_t)maps->settings.side;
-    assay_status       status = assay_raster_draw(scene, &map->view, samples);
+    assay_status       status = assay_raster_draw(maps->world, &map->view, samples);
     map->depth = status ? NULL : assay_allocate(scene->context, count, sizeof *map->depth);
     if (status == ASSAY_OK && !map->depth) {
         return assay_fail_memory(scene->context, "a shadow map");

@@ -40,7 +40,7 @@ static raster_verdict judge(const lit_world *w, const assay_raster_view *view)
     assay_raster_sample *samples =
         malloc((size_t)view->columns * (size_t)view->rows * sizeof *samples);
     assert_non_null(samples);
-    assert_int_equal(assay_raster_draw(w->scene, view, samples), ASSAY_OK);
+    assert_int_equal(assay_raster_draw(w->world, view, samples), ASSAY_OK);
     const raster_verdict v = raster_judge(w->world, view, samples);
     free(samples);
     return v;
@@ -149,7 +149,7 @@ static void depth_and_near(void **state)
     lit_world           w    = lit_world_open(b, 1);
     assay_raster_view   view = looking_up(9, 5);
     assay_raster_sample samples[45];
-    assert_int_equal(assay_raster_draw(w.scene, &view, samples), ASSAY_OK);
+    assert_int_equal(assay_raster_draw(w.world, &view, samples), ASSAY_OK);
     for (int i = 0; i < 45; i++) {
         assert_in_range(samples[i].triangle, 2, 3);
         assert_true(samples[i].depth == 1.0);
@@ -159,7 +159,7 @@ static void depth_and_near(void **state)
     } cases[] = {{0.999999, 1.0}, {1.0, 2.0}, {1.9, 2.0}, {2.0, INFINITY}};
     for (int k = 0; k < 4; k++) {
         view.near = cases[k].near;
-        assert_int_equal(assay_raster_draw(w.scene, &view, samples), ASSAY_OK);
+        assert_int_equal(assay_raster_draw(w.world, &view, samples), ASSAY_OK);
         for (int i = 0; i < 45; i++) {
             assert_true(samples[i].depth == cases[k].depth);
         }
@@ -185,7 +185,7 @@ static void crosses_the_eye(void **state)
         const raster_verdict v = judge(&w, &view);
         assert_int_equal(v.wrong + v.tie, 0);
         assert_true(v.hits > 100);
-        assert_int_equal(assay_raster_draw(w.scene, &view, samples), ASSAY_OK);
+        assert_int_equal(assay_raster_draw(w.world, &view, samples), ASSAY_OK);
         for (int i = 0; i < 41 * 63; i++) {
             const double y = assay_raster_centre(&view, i % 41, i / 41).y;
             if (samples[i].triangle < 2) { /* the floor is at depth -1 / Y */
@@ -235,7 +235,7 @@ static void masks(void **state)
     lit_world               w    = lit_world_open(b, 1);
     const assay_raster_view view = looking_up(8, 8);
     assay_raster_sample     samples[64];
-    assert_int_equal(assay_raster_draw(w.scene, &view, samples), ASSAY_OK);
+    assert_int_equal(assay_raster_draw(w.world, &view, samples), ASSAY_OK);
     for (int i = 0; i < 64; i++) {
         assert_true(samples[i].depth == 3.0);
     }
@@ -254,7 +254,7 @@ static void closed_from_inside(void **state)
     for (int i = 0; i < 30; i++) {
         assay_raster_view view = raster_judge_view(w.world, 11, (uint64_t)i, 30.0, SIDE);
         view.eye = vec3_mad(vec3(0.1, 0.2, 0.3), i % 3 ? 0.01 * i : 0.0, view.frame.x);
-        assert_int_equal(assay_raster_draw(w.scene, &view, samples), ASSAY_OK);
+        assert_int_equal(assay_raster_draw(w.world, &view, samples), ASSAY_OK);
         for (int k = 0; k < PIXELS; k++) {
             assert_true(samples[k].triangle != ASSAY_NO_TRIANGLE);
         }
@@ -273,8 +273,8 @@ static void threads_do_not_matter(void **state)
     for (int i = 0; i < 4; i++) {
         const assay_raster_view    view = raster_judge_view(one.world, 5, (uint64_t)i, 2.0, SIDE);
         static assay_raster_sample a[PIXELS], b[PIXELS];
-        assert_int_equal(assay_raster_draw(one.scene, &view, a), ASSAY_OK);
-        assert_int_equal(assay_raster_draw(two.scene, &view, b), ASSAY_OK);
+        assert_int_equal(assay_raster_draw(one.world, &view, a), ASSAY_OK);
+        assert_int_equal(assay_raster_draw(two.world, &view, b), ASSAY_OK);
         for (int k = 0; k < PIXELS; k++) {
             assert_true(memcmp(&a[k].depth, &b[k].depth, sizeof(double)) == 0);
             assert_int_equal(a[k].triangle, b[k].triangle);
@@ -301,7 +301,7 @@ static void refuses(void **state)
         view.rows    = bad[i].rows;
         view.half    = bad[i].half;
         view.near    = bad[i].near;
-        assert_int_equal(assay_raster_draw(w.scene, &view, samples), ASSAY_ERR_ARGUMENT);
+        assert_int_equal(assay_raster_draw(w.world, &view, samples), ASSAY_ERR_ARGUMENT);
         assert_int_equal(samples[0].triangle, 0x5a5a5a5a);
     }
     lit_world_close(&w);
