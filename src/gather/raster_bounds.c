@@ -50,22 +50,14 @@ static double largest_of(assay_vec3 v) { return most(fabs(v.x), most(fabs(v.y), 
 raster_band raster_band_of(const assay_scene *scene, const assay_raster_view *view,
                            pixel_range rows)
 {
-    const assay_frame3 *f    = &view->frame;
-    const double        step = 2.0 * view->half / view->rows;
-    raster_band         band = {
-                .view   = view,
-                .rows   = rows,
-                .low_y  = rows.first * step - view->half,
-                .high_y = (rows.last + 1) * step - view->half,
-                .slack = 0x1p-44 * (most(largest_of(scene->bounds_min), largest_of(scene->bounds_max)) +
+    const double step = 2.0 * view->half / view->rows;
+    raster_band  band = {
+         .view   = view,
+         .rows   = rows,
+         .low_y  = rows.first * step - view->half,
+         .high_y = (rows.last + 1) * step - view->half,
+         .slack  = 0x1p-44 * (most(largest_of(scene->bounds_min), largest_of(scene->bounds_max)) +
                             largest_of(view->eye))};
-    const double     at[4]  = {-view->half, view->half, band.low_y, band.high_y};
-    const assay_vec3 way[4] = {vec3_negate(f->x), f->x, vec3_negate(f->y), f->y};
-    for (int i = 0; i < 4; i++) {
-        const double out = i % 2 ? at[i] : -at[i];
-        band.side[i]     = view->parallel ? way[i] : vec3_mad(way[i], -out, f->z);
-        band.beyond[i]   = view->parallel ? out : 0.0;
-    }
     return band;
 }
 
@@ -181,7 +173,6 @@ void raster_band_boxes(const raster_band *band, const assay_bvh_planes planes,
     const assay_vec3         eye  = view->eye;
     box_lanes                b;
     double                   x[2][ASSAY_BVH_BOXES], y[2][ASSAY_BVH_BOXES], z[2][ASSAY_BVH_BOXES];
-    double                   inner[ASSAY_BVH_BOXES], outer[ASSAY_BVH_BOXES];
     bool                     out[ASSAY_BVH_BOXES];
     for (int i = 0; i < ASSAY_BVH_BOXES; i++) {
         b.x[i]    = 0.5 * ((double)planes[0][i] + (double)planes[1][i]) - eye.x;
@@ -195,12 +186,6 @@ void raster_band_boxes(const raster_band *band, const assay_bvh_planes planes,
     for (int i = 0; i < ASSAY_BVH_BOXES; i++) {
         /* An absent box is nowhere: NaN. */
         out[i] = !(z[1][i] + band->slack > view->near);
-    }
-    for (int k = 0; k < 4; k++) {
-        extend(&b, band->side[k], inner, outer);
-        for (int i = 0; i < ASSAY_BVH_BOXES; i++) {
-            out[i] |= inner[i] > band->beyond[k] + band->slack;
-        }
     }
     extend(&b, view->frame.x, x[0], x[1]);
     extend(&b, view->frame.y, y[0], y[1]);

@@ -15,8 +15,6 @@ typedef struct {
     pixel_range              rows;
     double                   low_y, high_y; /* its borders on the plane                       */
     double                   slack;         /* m, above the rounding of a place in the scene  */
-    assay_vec3               side[4];       /* outward normals of its sides ...               */
-    double                   beyond[4];     /* ... and what n . (p - eye) is on them          */
 } raster_band;
 
 raster_band raster_band_of(const assay_scene *scene, const assay_raster_view *view,
