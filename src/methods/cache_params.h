@@ -45,7 +45,7 @@
      "Side of the plane of gather=raster; theta_strata, phi_strata, strata and jitter are then "  \
      "not used.",                                                                                 \
      "[gautron06] 4.4.1"},                                                                        \
-    {"raster_fov", ASSAY_PARAM_REAL, "rad", "2.2142974355881810", ASSAY_FOV_MIN, ASSAY_FOV_MAX,   \
+    {"raster_fov", ASSAY_PARAM_REAL, "rad", "2.214297435588181",  ASSAY_FOV_MIN, ASSAY_FOV_MAX,   \
      NULL, "Field of view of gather=raster; 2 atan 2 as published (126.87 degrees).",             \
      "[larsen04], [gautron08]"},                                                                  \
     {"missing", ASSAY_PARAM_CHOICE, "", "border-corrected", 0, 0,                                 \

@@ -38,6 +38,8 @@ refuses "a cache for other bounces" 2 "bounces" render $box $few -o "$out/a.exr"
     --cache-in "$cache"
 refuses "a cache for another secondary" 2 "secondary" render $box $few -o "$out/a.exr" \
     --secondary cache --cache-in "$cache"
+refuses "a cache by rays for the raster" 2 "gather" render $box $few -o "$out/a.exr" \
+    --gather raster --cache-in "$cache"
 refuses "a cache of another scene" 2 "scene.digest" render scenes/furnace/furnace.gltf $few \
     -o "$out/a.exr" --cache-in "$cache"
 refuses "a cache of other options" 2 "scene.digest" render $box $few -o "$out/a.exr" \
@@ -54,7 +56,17 @@ refuses "a reference that is no image" 2 "manifest" render $box $few -o "$out/a.
 refuses "r_min above r_max" 2 "r_min" render $box $few -o "$out/a.exr" --r-min 2 --r-max 1
 refuses "r_min_pixels above r_max_pixels" 2 "r_min_pixels" render $box $few -o "$out/a.exr" \
     --r-min-pixels 2 --r-max-pixels 1
-for bad in "--a 0" "--a -1" "--a nan" "--theta-strata 1" "--phi-strata 1" "--theta-strata 5000" \
+run render $box $few -o "$folder/raster.exr" --gather raster --raster-size 12 --missing ratio \
+    --shadow map --shadow-size 64 --shadow-taps 4 --secondary direct --cache-out "$folder/raster"
+went_well && ! "$assay" diff "$folder/made.exr" "$folder/raster.exr" > /dev/null
+result $? "a rasterised cache is another one"
+refuses "a cache of another raster" 2 "gather" render $box $few -o "$out/a.exr" --gather raster \
+    --missing border --shadow map --secondary direct --cache-in "$folder/raster"
+refuses "maps of shadow for paths" 2 "secondary" render $box $few -o "$out/a.exr" --shadow map
+refuses "taps that are no square" 2 "taps" render $box $few -o "$out/a.exr" --shadow map \
+    --secondary direct --shadow-taps 15
+for bad in "--raster-size 1" "--raster-fov 3.2" "--raster-fov 0" "--missing all" "--gather both" \
+    "--shadow-size 8" "--a 0" "--a -1" "--a nan" "--theta-strata 1" "--phi-strata 1" "--theta-strata 5000" \
     "--levels 0" "--levels 9" "--max-records 0" "--passes 3" "--secondary all"; do
     set -- $bad
     refuses "$bad" 2 "$(echo "${1#--}" | tr - _)" render $box $few -o "$out/a.exr" $bad
