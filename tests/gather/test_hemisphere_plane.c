@@ -348,7 +348,11 @@ static void rectangles_in_view(void **state)
         assay_vec3        g[3], t[3];
         look(&scene, h);
         assay_hemisphere_rotation_gradient(h, g);
+        assay_hemisphere_translation_gradient(h, false, t);
+        assert_true(t[2].z == 0.0);
+        const assay_vec3 tangential = t[2];
         assay_hemisphere_translation_gradient(h, true, t);
+        assert_true(t[2].x == tangential.x && t[2].y == tangential.y && t[2].z != 0.0);
         const double raise = h->plane->raise_flux;
         const double e     = 2.0 * (double)closed_polygon(quad.vertices, 4, p, n);
         const double eg =

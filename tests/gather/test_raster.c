@@ -167,6 +167,30 @@ static void depth_and_near(void **state)
     lit_world_close(&w);
 }
 
+/* Edges belong to both sides, whichever way a face is wound: the diagonal of a square through the
+ * centres of pixels has no hole, and there the lower number is seen. */
+static void edges_belong(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        scene_builder *b = scene_builder_create();
+        const double   x = k == 0 ? 4.0 : -4.0;
+        quad(b, scene_builder_diffuse(b, 0.5, 0.0, true), -x, x, -4, 4, 1);
+        lit_world               w    = lit_world_open(b, 1);
+        const assay_raster_view view = looking_up(9, 9);
+        assay_raster_sample     samples[81];
+        assert_int_equal(assay_raster_draw(w.world, &view, samples), ASSAY_OK);
+        int first = 0;
+        for (int i = 0; i < 81; i++) {
+            assert_true(samples[i].depth == 1.0);
+            first += samples[i].triangle == 0;
+        }
+        assert_int_equal(first, 45);
+        assert_int_equal(judge(&w, &view).same, 81);
+        lit_world_close(&w);
+    }
+}
+
 /* A floor that starts before the eye and ends behind it, seen along it; near cuts it exactly. */
 static void crosses_the_eye(void **state)
 {
@@ -315,6 +339,7 @@ int main(void)
         cmocka_unit_test(sponza),
         cmocka_unit_test(ties_are_at_edges),
         cmocka_unit_test(depth_and_near),
+        cmocka_unit_test(edges_belong),
         cmocka_unit_test(crosses_the_eye),
         cmocka_unit_test(parallel_views),
         cmocka_unit_test(masks),
