@@ -243,7 +243,8 @@ static bool allocate(assay_context *context, hemisphere_plane *plane)
     plane->y           = assay_allocate(context, h + 1, sizeof *plane->y);
     plane->cell        = assay_allocate(context, w * h, sizeof *plane->cell);
     plane->wall        = assay_allocate(context, plane->wall_count, sizeof *plane->wall);
-    return plane->x && plane->y && plane->cell && plane->wall;
+    plane->seen        = assay_allocate(context, w * h, sizeof *plane->seen);
+    return plane->x && plane->y && plane->cell && plane->wall && plane->seen;
 }
 
 static void fill(hemisphere_plane *plane)
@@ -303,6 +304,7 @@ void hemisphere_plane_destroy(assay_context *context, hemisphere_plane *plane)
         assay_release(context, plane->y);
         assay_release(context, plane->cell);
         assay_release(context, plane->wall);
+        assay_release(context, plane->seen);
         assay_release(context, plane);
     }
 }

@@ -4,6 +4,7 @@
 #define ASSAY_GATHER_HEMISPHERE_PLANE_H
 
 #include "gather/hemisphere.h"
+#include "gather/raster.h"
 
 /* What a pixel stands for, with what it takes over of the missing directions. */
 typedef struct {
@@ -36,6 +37,8 @@ typedef struct hemisphere_plane {
     size_t        wall_count;  /* rim arcs last                                                  */
     size_t        inner_count; /* of them between pixels of the plane                            */
     double        raise_flux, raise_solid; /* RATIO: what all are multiplied by; else 1          */
+    assay_raster_view    view; /* of who gathered last, and ...                                */
+    assay_raster_sample *seen; /* ... what its pixels saw: columns * rows                      */
 } hemisphere_plane;
 
 /* Errors: ARGUMENT (field of view, missing), MEMORY. */

@@ -94,6 +94,10 @@
     {"r_max_pixels", ASSAY_PARAM_REAL, "pixels", "0", 0, 1e6, NULL,                               \
      "R is no larger than so many pixels at the record; 0: no limit.",                            \
      "[tabellion04]"},                                                                            \
+    {"gradient_limit", ASSAY_PARAM_BOOL, "", "off", 0, 0, NULL,                                   \
+     "R is no larger than irradiance / |translational gradient|, nor that gradient than "          \
+     "irradiance / R.",                                                                           \
+     "[krivanek05]"},                                                                             \
     {"in_front", ASSAY_PARAM_BOOL, "", "off", 0, 0, NULL,                                         \
      "Records in front of the point are left out.",                                               \
      "[ward88]"},                                                                                 \

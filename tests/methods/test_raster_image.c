@@ -149,6 +149,26 @@ static void room_against_path(void **state)
     assay_context_destroy(context);
 }
 
+/* On top of one another, in more than one block of cells: all bounces. */
+static void levels_of_planes(void **state)
+{
+    (void)state;
+    static const setting levels[] = {
+        {"secondary", "cache"}, {"levels", "3"}, {"raster_size", "72"}, {"a", "0.4"}, {NULL, NULL}};
+    static const setting all[]   = {{"spp", "300"}, {NULL, NULL}};
+    assay_context       *context = measure_context(2);
+    assay_scene         *scene   = room(context);
+    assay_image         *truth = render(scene, all, NULL), *cache = render(scene, RASTER, levels);
+    const double         e = measure_mean(truth, "IrradianceIndirect.G").value;
+    const double         c = measure_mean(cache, "IrradianceIndirect.G").value;
+    print_message("#| all bounces: %.4f by paths, %.4f by caches on planes\n", e, c);
+    assert_true(fabs(c / e - 1.0) < 0.06);
+    assay_image_destroy(truth);
+    assay_image_destroy(cache);
+    assay_scene_destroy(scene);
+    assay_context_destroy(context);
+}
+
 static void same_bits_for_all_threads(void **state)
 {
     (void)state;
@@ -245,9 +265,10 @@ static void settings_that_exclude(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(furnace_by_each_way), cmocka_unit_test(radiance_records),
-        cmocka_unit_test(room_against_path),   cmocka_unit_test(same_bits_for_all_threads),
-        cmocka_unit_test(memory_refused),      cmocka_unit_test(settings_that_exclude),
+        cmocka_unit_test(furnace_by_each_way),       cmocka_unit_test(radiance_records),
+        cmocka_unit_test(room_against_path),         cmocka_unit_test(levels_of_planes),
+        cmocka_unit_test(same_bits_for_all_threads), cmocka_unit_test(memory_refused),
+        cmocka_unit_test(settings_that_exclude),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
