@@ -8,6 +8,8 @@
  * to (0, 0, pi), both to rounding. */
 #include "gather/hemisphere_plane.h"
 
+#include <assert.h>
+
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/numerics.h"
@@ -118,8 +120,11 @@ static void weigh_pixels(hemisphere_plane *plane)
     plane_cell *cell      = plane->cell;
     for (int j = 0; j < plane->rows; j++) {
         for (int i = 0; i < plane->columns; i++, cell++) {
-            *cell = published ? (plane_cell){.solid = pixel_published(plane, i, j)}
-                              : pixel_exact(plane, i, j);
+            if (published) {
+                cell->solid = pixel_published(plane, i, j);
+            } else {
+                *cell = pixel_exact(plane, i, j);
+            }
         }
     }
 }
@@ -202,6 +207,7 @@ plane_arc hemisphere_plane_arc(const hemisphere_plane *plane, size_t i)
 {
     const size_t w = (size_t)plane->columns, upright = (w - 1) * (size_t)plane->rows;
     plane_arc    arc;
+    assert(w >= 2);
     if (i >= plane->inner_count) {
         return rim_arc(plane, (int)(i - plane->inner_count));
     }

@@ -92,33 +92,35 @@ static assay_raster_view view_of(const assay_shadow_maps *maps, const assay_punc
 
 /* ---- making ---- */
 
-static assay_status draw(assay_shadow_maps *maps, shadow_map *map, assay_raster_sample *samples)
+static size_t texels_of(const assay_shadow_maps *maps)
 {
-    const assay_scene *scene  = maps->world->scene;
-    const size_t       count  = (size_t)maps->settings.side * (size_t)maps->settings.side;
-    assay_status       status = assay_raster_draw(maps->world, &map->view, samples);
-    map->depth = status ? NULL : assay_allocate(scene->context, count, sizeof *map->depth);
-    if (status == ASSAY_OK && !map->depth) {
-        return assay_fail_memory(scene->context, "a shadow map");
-    }
-    for (size_t i = 0; i < count && status == ASSAY_OK; i++) {
-        map->depth[i] = samples[i].depth;
-    }
-    return status;
+    return (size_t)maps->settings.side * (size_t)maps->settings.side;
 }
 
-static assay_status draw_all(assay_shadow_maps *maps)
+static assay_status draw(const assay_shadow_maps *maps, shadow_map *map,
+                         assay_raster_sample *samples)
 {
-    const assay_scene   *scene   = maps->world->scene;
-    const size_t         count   = (size_t)maps->settings.side * (size_t)maps->settings.side;
-    assay_raster_sample *samples = assay_allocate(scene->context, count, sizeof *samples);
-    maps->lights = assay_allocate(scene->context, scene->punctual_count, sizeof *maps->lights);
-    maps->maps =
-        assay_allocate(scene->context, (size_t)scene->punctual_count * 6, sizeof *maps->maps);
-    assay_status status = samples && maps->lights && maps->maps
-                              ? ASSAY_OK
-                              : assay_fail_memory(scene->context, "shadow maps");
-    for (uint32_t i = 0; i < scene->punctual_count && status == ASSAY_OK; i++) {
+    assay_context     *context = maps->world->scene->context;
+    const size_t       count   = texels_of(maps);
+    const assay_status status  = assay_raster_draw(maps->world, &map->view, samples);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    map->depth = assay_allocate(context, count, sizeof *map->depth);
+    if (!map->depth) {
+        return assay_fail_memory(context, "a shadow map");
+    }
+    for (size_t i = 0; i < count; i++) {
+        map->depth[i] = samples[i].depth;
+    }
+    return ASSAY_OK;
+}
+
+static assay_status draw_all(assay_shadow_maps *maps, assay_raster_sample *samples)
+{
+    const assay_scene *scene  = maps->world->scene;
+    assay_status       status = ASSAY_OK;
+    for (uint32_t i = 0; i < scene->punctual_count; i++) {
         maps->lights[i] = (light_maps){maps->map_count, views_of(&scene->punctual[i])};
         for (uint32_t f = 0; f < maps->lights[i].count && status == ASSAY_OK; f++) {
             shadow_map *map = &maps->maps[maps->map_count++];
@@ -126,6 +128,19 @@ static assay_status draw_all(assay_shadow_maps *maps)
             status          = draw(maps, map, samples);
         }
     }
+    return status;
+}
+
+static assay_status make(assay_shadow_maps *maps)
+{
+    const assay_scene   *scene   = maps->world->scene;
+    const size_t         lights  = scene->punctual_count;
+    assay_raster_sample *samples = assay_allocate(scene->context, texels_of(maps), sizeof *samples);
+    maps->lights                 = assay_allocate(scene->context, lights, sizeof *maps->lights);
+    maps->maps                   = assay_allocate(scene->context, lights * 6, sizeof *maps->maps);
+    const assay_status status    = samples && maps->lights && maps->maps
+                                       ? draw_all(maps, samples)
+                                       : assay_fail_memory(scene->context, "shadow maps");
     assay_release(scene->context, samples);
     return status;
 }
@@ -165,7 +180,7 @@ assay_status assay_shadow_maps_create(const assay_world           *world,
     maps->world    = world;
     maps->settings = *settings;
     maps->tap_side = tap_side;
-    status         = draw_all(maps);
+    status         = make(maps);
     if (status != ASSAY_OK) {
         assay_shadow_maps_destroy(maps);
         return status;

@@ -23,8 +23,8 @@ static void visit_leaf(const bvh_leaf *leaf, const assay_bvh_visitor *visitor, v
  */
 static int push_children(const bvh_node *node, const double *keys, uint32_t *stack, int height)
 {
-    const int base = height;
-    double    sorted[BVH_WIDTH];
+    const int base              = height;
+    double    sorted[BVH_WIDTH] = {0};
     for (int i = 0; i < BVH_WIDTH; i++) {
         if (!(keys[i] < INFINITY) || !(node->plane[0][i] <= node->plane[1][i])) {
             continue;
