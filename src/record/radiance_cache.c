@@ -138,11 +138,13 @@ assay_status assay_radiance_cache_create(assay_context *context, assay_irradianc
     if (!cache) {
         return assay_fail_memory(context, "the radiance cache");
     }
-    cache->context                        = context;
-    cache->settings                       = *settings;
-    cache->workers                        = assay_context_threads(context);
-    cache->settings.records.layout.strata = ASSAY_STRATA_UNIFORM;
-    const assay_status status             = create_parts(cache, beside);
+    cache->context  = context;
+    cache->settings = *settings;
+    cache->workers  = assay_context_threads(context);
+    if (settings->records.layout.strata != ASSAY_STRATA_PLANE) {
+        cache->settings.records.layout.strata = ASSAY_STRATA_UNIFORM;
+    }
+    const assay_status status = create_parts(cache, beside);
     if (status != ASSAY_OK) {
         assay_radiance_cache_destroy(cache);
         return status;
