@@ -13,38 +13,49 @@ static const double DOT_RADIUS = 1.5, BORDER_WIDTH = 1.0;
 
 static const double DIMMED = 0.3, LARGEST_ERROR = 0.2;
 
-assay_status assay_cache_debug_open(const assay_frame *frame, assay_cache_debug_kind kind,
-                                    const char *reference, assay_cache_debug *debug_out)
+static bool find_truth(const assay_frame *frame, const assay_image *image, const char *name,
+                       assay_cache_debug_truth *truth_out)
 {
+    const size_t  pixels = (size_t)frame->width * (size_t)frame->height;
+    assay_channel channel;
+    if (assay_image_width(image) != frame->width || assay_image_height(image) != frame->height ||
+        !assay_image_find_channel(image, name, &channel) || channel.type != ASSAY_CHANNEL_FLOAT) {
+        return false;
+    }
+    assay_cache_debug_truth truth = {.values = channel.data.f32};
+    for (size_t i = 0; i < pixels; i++) {
+        truth.mean += truth.values[i] / (double)pixels;
+    }
+    *truth_out = truth;
+    return true;
+}
+
+assay_status assay_cache_debug_open(const assay_frame *frame, assay_cache_debug_kind kind,
+                                    const char *reference, bool with_radiance,
+                                    assay_cache_debug *debug_out)
+{
+    const char *layers =
+        with_radiance ? "layers IrradianceIndirect and Indirect" : "layer IrradianceIndirect";
     assay_cache_debug debug = {.kind = kind};
-    assay_channel     channel;
     if (kind != ASSAY_CACHE_DEBUG_ERROR) {
         *debug_out = debug;
         return ASSAY_OK;
     }
     if (!reference) {
         return assay_fail(frame->context, ASSAY_ERR_ARGUMENT,
-                          "debug=error needs a reference: an image with the layer "
-                          "IrradianceIndirect");
+                          "debug=error needs a reference: an image with the %s", layers);
     }
     const assay_status status = assay_image_read(frame->context, reference, &debug.reference);
     if (status != ASSAY_OK) {
         return status;
     }
-    if (assay_image_width(debug.reference) != frame->width ||
-        assay_image_height(debug.reference) != frame->height ||
-        !assay_image_find_channel(debug.reference, "IrradianceIndirect.G", &channel) ||
-        channel.type != ASSAY_CHANNEL_FLOAT) {
+    if (!find_truth(frame, debug.reference, "IrradianceIndirect.G", &debug.irradiance) ||
+        (with_radiance && !find_truth(frame, debug.reference, "Indirect.G", &debug.radiance))) {
         assay_image_destroy(debug.reference);
         return assay_fail(frame->context, ASSAY_ERR_ARGUMENT,
                           "%s: as the reference of debug=error it must have %d x %d pixels and the "
-                          "layer IrradianceIndirect",
-                          reference, frame->width, frame->height);
-    }
-    const size_t pixels = (size_t)frame->width * (size_t)frame->height;
-    debug.expected      = channel.data.f32;
-    for (size_t i = 0; i < pixels; i++) {
-        debug.mean += debug.expected[i] / (double)pixels;
+                          "%s",
+                          reference, frame->width, frame->height, layers);
     }
     *debug_out = debug;
     return ASSAY_OK;
@@ -83,6 +94,17 @@ static assay_rgb paint_weights(const assay_contributions *found, double a)
     return assay_heat_color(sum > 1.0 ? assay_log(sum) / assay_log(1000.0) : 0.0);
 }
 
+assay_rgb assay_cache_debug_error(const assay_cache_debug_truth *truth, uint64_t pixel,
+                                  double value)
+{
+    const double expected = truth->values[pixel];
+    const double scale    = expected + 0.01 * truth->mean;
+    const double error    = fabs(value - expected);
+    /* Where a reference is all black, every light is an error. */
+    return assay_heat_color(error > 0.0 ? (scale > 0.0 ? error / scale / LARGEST_ERROR : 1.0)
+                                        : 0.0);
+}
+
 assay_status assay_cache_debug_paint(const assay_cache_debug *debug, assay_irradiance_cache *cache,
                                      const assay_cached_point *point, uint32_t limit, int worker,
                                      assay_rgb color, assay_rgb *picture_out)
@@ -110,12 +132,9 @@ assay_status assay_cache_debug_paint(const assay_cache_debug *debug, assay_irrad
         *picture_out =
             paint_weights(found, assay_record_store_rules(assay_irradiance_cache_store(cache))->a);
         break;
-    case ASSAY_CACHE_DEBUG_ERROR: {
-        const double expected = debug->expected[point->pixel];
-        const double error    = fabs(e.g - expected) / (expected + 0.01 * debug->mean);
-        *picture_out          = assay_heat_color(error / LARGEST_ERROR);
+    case ASSAY_CACHE_DEBUG_ERROR:
+        *picture_out = assay_cache_debug_error(&debug->irradiance, point->pixel, e.g);
         break;
-    }
     }
     return ASSAY_OK;
 }

@@ -6,28 +6,41 @@
 
 #include "core/context.h"
 #include "io/bundle_read.h"
+#include "record/radiance_bundle.h"
 #include "record/record_bundle.h"
 
-/* What the records' light depends on. */
-enum { KEY_COUNT = 5, TEXT_SIZE = 80 };
+/* What the records' light depends on; the last two of radiance records alone. */
+enum { KEY_COUNT = 7, IRRADIANCE_KEYS = 5, TEXT_SIZE = 80 };
 
-static const char *const KEYS[KEY_COUNT] = {"content", "scene.digest", "scene.time", "bounces",
-                                            "secondary"};
+static const char *const KEYS[KEY_COUNT] = {
+    "content",   "scene.digest", "scene.time",          "bounces",
+    "secondary", "order",        "coefficient_gradient"};
 
-static void describe(const assay_frame *frame, const assay_irradiance_cache_settings *settings,
-                     char values[KEY_COUNT][TEXT_SIZE])
+static const char RADIANCE_PREFIX[] = "radiance_records";
+
+typedef struct {
+    int  count;
+    char values[KEY_COUNT][TEXT_SIZE];
+} description;
+
+static description describe(const assay_frame *frame, const assay_cache_set *caches)
 {
     static const char *const secondary[] = {"direct", "path", "cache"};
+    static const char *const gradient[]  = {"none", "points", "walls"};
     const assay_scene       *scene       = frame->world->scene;
-    snprintf(values[0], TEXT_SIZE, "irradiance records");
-    snprintf(values[1], TEXT_SIZE, "%s", scene->digest);
-    snprintf(values[2], TEXT_SIZE, "%.17g", scene->time);
-    if (settings->path.bounces == ASSAY_BOUNCES_INF) {
-        snprintf(values[3], TEXT_SIZE, "inf");
-    } else {
-        snprintf(values[3], TEXT_SIZE, "%d", settings->path.bounces);
+    const int                bounces     = caches->settings->path.bounces;
+    description              d           = {.count = caches->glossy ? KEY_COUNT : IRRADIANCE_KEYS};
+    snprintf(d.values[0], TEXT_SIZE,
+             caches->glossy ? "irradiance and radiance records" : "irradiance records");
+    snprintf(d.values[1], TEXT_SIZE, "%s", scene->digest);
+    snprintf(d.values[2], TEXT_SIZE, "%.17g", scene->time);
+    snprintf(d.values[3], TEXT_SIZE, bounces == ASSAY_BOUNCES_INF ? "inf" : "%d", bounces);
+    snprintf(d.values[4], TEXT_SIZE, "%s", secondary[caches->settings->secondary]);
+    if (caches->glossy) {
+        snprintf(d.values[5], TEXT_SIZE, "%d", caches->glossy->order);
+        snprintf(d.values[6], TEXT_SIZE, "%s", gradient[caches->glossy->gradient]);
     }
-    snprintf(values[4], TEXT_SIZE, "%s", secondary[settings->secondary]);
+    return d;
 }
 
 static void prefix_of(int level, char prefix[TEXT_SIZE])
@@ -40,9 +53,10 @@ static void prefix_of(int level, char prefix[TEXT_SIZE])
 }
 
 assay_status assay_cache_file_add(assay_context *context, assay_bundle *bundle,
-                                  assay_irradiance_cache *cache)
+                                  const assay_cache_set *caches)
 {
-    assay_status status = ASSAY_OK;
+    assay_irradiance_cache *cache  = caches->irradiance;
+    assay_status            status = ASSAY_OK;
     for (int level = 0; cache && status == ASSAY_OK; level++) {
         char prefix[TEXT_SIZE];
         prefix_of(level, prefix);
@@ -50,19 +64,19 @@ assay_status assay_cache_file_add(assay_context *context, assay_bundle *bundle,
             assay_record_bundle_add(context, bundle, prefix, assay_irradiance_cache_store(cache));
         cache = assay_irradiance_cache_next(cache);
     }
-    return status;
+    return status || !caches->radiance
+               ? status
+               : assay_radiance_bundle_add(context, bundle, RADIANCE_PREFIX, caches->radiance);
 }
 
-assay_status assay_cache_file_create(const assay_frame                     *frame,
-                                     const assay_irradiance_cache_settings *settings,
+assay_status assay_cache_file_create(const assay_frame *frame, const assay_cache_set *caches,
                                      const char *path, assay_bundle **bundle_out)
 {
-    char          values[KEY_COUNT][TEXT_SIZE];
-    assay_bundle *bundle = NULL;
-    assay_status  status = assay_bundle_create(frame->context, path, &bundle);
-    describe(frame, settings, values);
-    for (int i = 0; i < KEY_COUNT && status == ASSAY_OK; i++) {
-        status = assay_bundle_describe(bundle, KEYS[i], values[i]);
+    const description d      = describe(frame, caches);
+    assay_bundle     *bundle = NULL;
+    assay_status      status = assay_bundle_create(frame->context, path, &bundle);
+    for (int i = 0; i < d.count && status == ASSAY_OK; i++) {
+        status = assay_bundle_describe(bundle, KEYS[i], d.values[i]);
     }
     if (status != ASSAY_OK) {
         assay_bundle_destroy(bundle);
@@ -72,39 +86,51 @@ assay_status assay_cache_file_create(const assay_frame                     *fram
     return ASSAY_OK;
 }
 
-static assay_status check(const assay_frame *frame, const assay_irradiance_cache_settings *settings,
+static assay_status check(const assay_frame *frame, const assay_cache_set *caches,
                           const assay_bundle_reader *reader)
 {
-    char values[KEY_COUNT][TEXT_SIZE];
-    describe(frame, settings, values);
-    for (int i = 0; i < KEY_COUNT; i++) {
+    const description d = describe(frame, caches);
+    for (int i = 0; i < d.count; i++) {
         const char *saved = assay_bundle_text(reader, KEYS[i]);
-        if (!saved || strcmp(saved, values[i]) != 0) {
+        if (!saved || strcmp(saved, d.values[i]) != 0) {
             return assay_fail(frame->context, ASSAY_ERR_ARGUMENT,
                               "%s: a cache for other light: its '%s' is '%.70s', not '%s'",
                               assay_bundle_path(reader), KEYS[i], saved ? saved : "missing",
-                              values[i]);
+                              d.values[i]);
         }
     }
     return ASSAY_OK;
 }
 
-assay_status assay_cache_file_read(const assay_frame                     *frame,
-                                   const assay_irradiance_cache_settings *settings,
-                                   const char *path, assay_irradiance_cache *cache)
+static assay_status read_levels(assay_context *context, assay_bundle_reader *reader,
+                                assay_irradiance_cache *cache)
 {
-    assay_bundle_reader *reader = NULL;
-    assay_status         status = assay_bundle_open(frame->context, path, &reader);
-    status                      = status ? status : check(frame, settings, reader);
+    assay_status status = ASSAY_OK;
     for (int level = 0; cache && status == ASSAY_OK; level++) {
         char prefix[TEXT_SIZE];
         prefix_of(level, prefix);
         /* A cache of fewer levels leaves the lower ones to be filled. */
         if (level == 0 || assay_record_bundle_is_there(reader, prefix)) {
-            status = assay_record_bundle_read(frame->context, reader, prefix,
+            status = assay_record_bundle_read(context, reader, prefix, SIZE_MAX,
                                               assay_irradiance_cache_store(cache));
         }
         cache = assay_irradiance_cache_next(cache);
+    }
+    return status;
+}
+
+assay_status assay_cache_file_read(const assay_frame *frame, const assay_cache_set *caches,
+                                   const char *path)
+{
+    assay_bundle_reader *reader = NULL;
+    assay_status         status = assay_bundle_open(frame->context, path, &reader);
+    status                      = status ? status : check(frame, caches, reader);
+    status = status ? status : read_levels(frame->context, reader, caches->irradiance);
+    /* With another glossy_accuracy there may have been none. */
+    if (status == ASSAY_OK && caches->radiance &&
+        assay_record_bundle_is_there(reader, RADIANCE_PREFIX)) {
+        status =
+            assay_radiance_bundle_read(frame->context, reader, RADIANCE_PREFIX, caches->radiance);
     }
     assay_bundle_close(reader);
     return status;

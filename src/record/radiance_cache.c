@@ -44,38 +44,63 @@ void assay_radiance_cache_destroy(assay_radiance_cache *cache)
     }
 }
 
-static bool has_gradients(const assay_radiance_cache *cache)
+bool assay_radiance_cache_has_gradients(const assay_radiance_cache *cache)
 {
     return cache->settings.gradient != ASSAY_COEFFICIENT_GRADIENT_NONE;
 }
 
 /* ---- records ---- */
 
+static assay_status make_room(assay_radiance_cache *cache, size_t rows)
+{
+    void        *grown  = cache->coefficients;
+    assay_status status = assay_grow(cache->context, &grown, &cache->coefficient_capacity, rows,
+                                     cache->count * sizeof(double));
+    cache->coefficients = grown;
+    if (status != ASSAY_OK || !assay_radiance_cache_has_gradients(cache)) {
+        return status;
+    }
+    grown            = cache->gradients;
+    status           = assay_grow(cache->context, &grown, &cache->gradient_capacity, rows,
+                                  cache->count * sizeof(assay_vec3));
+    cache->gradients = grown;
+    return status;
+}
+
 static assay_status keep(void *user, uint32_t number, const assay_hemisphere *hemisphere)
 {
     assay_radiance_cache *cache  = user;
-    void                 *rows   = cache->coefficients;
-    assay_status          status = assay_grow(cache->context, &rows, &cache->coefficient_capacity,
-                                              (size_t)number + 1, cache->count * sizeof(double));
-    cache->coefficients          = rows;
+    assay_status          status = make_room(cache, (size_t)number + 1);
     if (status == ASSAY_OK) {
         status = assay_hemisphere_project(hemisphere, cache->context, cache->hsh,
                                           cache->coefficients + number * cache->count);
     }
-    if (status != ASSAY_OK || !has_gradients(cache)) {
-        return status;
+    return status != ASSAY_OK || !assay_radiance_cache_has_gradients(cache)
+               ? status
+               : assay_hemisphere_project_gradient(hemisphere, cache->context, cache->hsh,
+                                                   cache->settings.gradient ==
+                                                           ASSAY_COEFFICIENT_GRADIENT_WALLS
+                                                       ? ASSAY_GRADIENT_WALLS
+                                                       : ASSAY_GRADIENT_POINTS,
+                                                   cache->gradients + number * cache->count);
+}
+
+assay_status assay_radiance_cache_take_rows(assay_radiance_cache *cache, size_t rows,
+                                            const double *coefficients, const double *gradients)
+{
+    const size_t first = assay_record_store_count(assay_irradiance_cache_store(cache->records));
+    const assay_status status = rows ? make_room(cache, first + rows) : ASSAY_OK;
+    if (status != ASSAY_OK) {
+        return assay_fail_memory(cache->context, "the radiance cache");
     }
-    rows   = cache->gradients;
-    status = assay_grow(cache->context, &rows, &cache->gradient_capacity, (size_t)number + 1,
-                        cache->count * sizeof(assay_vec3));
-    cache->gradients = rows;
-    return status ? status
-                  : assay_hemisphere_project_gradient(hemisphere, cache->context, cache->hsh,
-                                                      cache->settings.gradient ==
-                                                              ASSAY_COEFFICIENT_GRADIENT_WALLS
-                                                          ? ASSAY_GRADIENT_WALLS
-                                                          : ASSAY_GRADIENT_POINTS,
-                                                      cache->gradients + number * cache->count);
+    for (size_t i = 0; i < rows * cache->count; i++) {
+        cache->coefficients[first * cache->count + i] = coefficients[i];
+        if (assay_radiance_cache_has_gradients(cache)) {
+            cache->gradients[first * cache->count + i] =
+                vec3(gradients[3 * i], gradients[3 * i + 1], gradients[3 * i + 2]);
+        }
+    }
+    return ASSAY_OK;
 }
 
 static assay_status create_parts(assay_radiance_cache *cache, assay_irradiance_cache *beside)
@@ -145,7 +170,8 @@ const double *assay_radiance_cache_coefficients(const assay_radiance_cache *cach
 const assay_vec3 *assay_radiance_cache_gradients(const assay_radiance_cache *cache, uint32_t number)
 {
     assert(number < assay_record_store_count(assay_irradiance_cache_store(cache->records)));
-    return has_gradients(cache) ? cache->gradients + number * cache->count : NULL;
+    return assay_radiance_cache_has_gradients(cache) ? cache->gradients + number * cache->count
+                                                     : NULL;
 }
 
 /* ---- asking ---- */
@@ -155,8 +181,9 @@ static void move(const assay_radiance_cache *cache, uint32_t number, const assay
                  assay_vec3 offset, double *moved)
 {
     const double     *c = cache->coefficients + number * cache->count;
-    const assay_vec3 *g = has_gradients(cache) ? cache->gradients + number * cache->count : NULL;
-    const assay_vec3  local = frame3_to_local(frame, offset);
+    const assay_vec3 *g =
+        assay_radiance_cache_has_gradients(cache) ? cache->gradients + number * cache->count : NULL;
+    const assay_vec3 local = frame3_to_local(frame, offset);
     for (size_t i = 0; i < cache->count; i++) {
         moved[i] = g ? c[i] + vec3_dot(g[i], local) : c[i];
     }

@@ -48,6 +48,13 @@ const double *assay_radiance_cache_coefficients(const assay_radiance_cache *cach
 const assay_vec3 *assay_radiance_cache_gradients(const assay_radiance_cache *cache,
                                                  uint32_t                    number);
 
+bool assay_radiance_cache_has_gradients(const assay_radiance_cache *cache);
+
+/* Rows of saved records, which are to be added to the store of the records next, in this order:
+ * coefficients, and where the cache has gradients 3 numbers a coefficient.  Errors: MEMORY. */
+assay_status assay_radiance_cache_take_rows(assay_radiance_cache *cache, size_t rows,
+                                            const double *coefficients, const double *gradients);
+
 /* Coefficients of what arrives at a point, 3 rows of count, in the frame given (orthonormal, z the
  * normal), from the records numbered below `limit`.  *found_out false, and nothing else written:
  * none reaches the point.  Allocates nothing but room for longer lists of records.  Errors:

@@ -59,11 +59,10 @@ bool assay_record_bundle_is_there(const assay_bundle_reader *reader, const char 
     return assay_bundle_lists(reader, name);
 }
 
-static assay_status read_fields(assay_bundle_reader *reader, const char *prefix,
+static assay_status read_fields(assay_bundle_reader *reader, const char *prefix, size_t rows,
                                 assay_array *tables[FIELD_COUNT])
 {
     assay_status status = ASSAY_OK;
-    size_t       rows   = SIZE_MAX;
     for (int f = 0; f < FIELD_COUNT && status == ASSAY_OK; f++) {
         char name[NAME_SIZE];
         name_of(prefix, f, name);
@@ -74,10 +73,10 @@ static assay_status read_fields(assay_bundle_reader *reader, const char *prefix,
 }
 
 assay_status assay_record_bundle_read(assay_context *context, assay_bundle_reader *reader,
-                                      const char *prefix, assay_record_store *store)
+                                      const char *prefix, size_t rows, assay_record_store *store)
 {
     assay_array *tables[FIELD_COUNT] = {NULL};
-    assay_status status              = read_fields(reader, prefix, tables);
+    assay_status status              = read_fields(reader, prefix, rows, tables);
     const size_t count               = status ? 0 : assay_array_rows(tables[0]);
     for (size_t i = 0; i < count && status == ASSAY_OK; i++) {
         assay_record record;

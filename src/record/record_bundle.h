@@ -14,9 +14,9 @@ assay_status assay_record_bundle_add(assay_context *context, assay_bundle *bundl
 /* Whether the bundle has records of this prefix. */
 bool assay_record_bundle_is_there(const assay_bundle_reader *reader, const char *prefix);
 
-/* Adds the records of a bundle to a store.  Errors: those of assay_bundle_read_table; FORMAT (a
- * record that cannot be). */
+/* Adds the records of a bundle to a store.  rows: how many they must be; SIZE_MAX: any number.
+ * Errors: those of assay_bundle_read_table; FORMAT (a record that cannot be). */
 assay_status assay_record_bundle_read(assay_context *context, assay_bundle_reader *reader,
-                                      const char *prefix, assay_record_store *store);
+                                      const char *prefix, size_t rows, assay_record_store *store);
 
 #endif

@@ -5,32 +5,45 @@
 . tests/support/tap.sh
 
 few="--method irradiance-cache --spp 1 --theta-strata 3 --phi-strata 9 --a 0.6 --size 12x12"
-cache=$folder/cache
+glossy="-q --method radiance-cache --order 3 --glossy-accuracy 0 --grid 4 --nodes 8 --spp 1
+    --theta-strata 3 --phi-strata 9 --a 0.6 --size 12x12"
+shiny=scenes/cornell-box-glossy/cornell-box-glossy.gltf
 
 # ---- a cache goes out and comes in ----
-run render $box $few -o "$folder/made.exr" --cache-out "$cache"
-went_well && [ -f "$cache/manifest.json" ] && [ -f "$cache/records/irradiance.npy" ]
-result $? "a cache is saved"
-run render $box $few -o "$folder/loaded.exr" --cache-in "$cache"
-went_well && "$assay" diff "$folder/made.exr" "$folder/loaded.exr" > /dev/null
-result $? "and gives the same image again"
-run render $box $few -o "$folder/other.exr" --cache-in "$cache" --a 0.5 --gradients none
-went_well && ! "$assay" diff "$folder/made.exr" "$folder/other.exr" > /dev/null
-result $? "and another with other rules"
-run render $box $few -o "$folder/view.exr" --size 12x16 --cache-in "$cache" --stats "$folder/s.json"
-went_well && grep -q '"records"' "$folder/s.json"
-result $? "and serves another view"
-for kind in records weights; do
-    run render $box $few -o "$folder/$kind.exr" --debug $kind
-    went_well && ! "$assay" diff "$folder/made.exr" "$folder/$kind.exr" > /dev/null
-    result $? "debug=$kind is another picture"
-done
-run render $box $few -o "$folder/error.exr" --debug error --reference "$folder/made.exr"
-went_well
-result $? "debug=error against itself"
-run render $box $few -o "$folder/b.exr" --dump "$folder/stages"
-went_well && [ -f "$folder/stages/records/position.npy" ] && [ -f "$folder/stages/gbuffer/depth.exr" ]
-result $? "records are among the dumped stages"
+good_caches() { # METHOD SCENE SETTINGS ARRAY: the files are named after the method
+    name=$1 scene=$2 settings=$3 array=$4
+    cache=$folder/$name
+    run render $scene $settings -o "$folder/$name-made.exr" --cache-out "$cache"
+    went_well && [ -f "$cache/manifest.json" ] && [ -f "$cache/$array.npy" ]
+    result $? "$name: a cache is saved"
+    run render $scene $settings -o "$folder/$name-loaded.exr" --cache-in "$cache"
+    went_well && "$assay" diff "$folder/$name-made.exr" "$folder/$name-loaded.exr" > /dev/null
+    result $? "$name: and gives the same image again"
+    run render $scene $settings -o "$folder/other.exr" --cache-in "$cache" --a 0.5 --gradients none
+    went_well && ! "$assay" diff "$folder/$name-made.exr" "$folder/other.exr" > /dev/null
+    result $? "$name: and another with other rules"
+    run render $scene $settings -o "$folder/$name-view.exr" --size 12x16 --cache-in "$cache" \
+        --stats "$folder/s.json"
+    went_well && grep -q '"records"' "$folder/s.json"
+    result $? "$name: and serves another view"
+    for kind in records weights; do
+        run render $scene $settings -o "$folder/$kind.exr" --debug $kind
+        went_well && ! "$assay" diff "$folder/$name-made.exr" "$folder/$kind.exr" > /dev/null
+        result $? "$name: debug=$kind is another picture"
+    done
+    run render $scene $settings -o "$folder/error.exr" --debug error \
+        --reference "$folder/$name-made.exr"
+    went_well
+    result $? "$name: debug=error against itself"
+    run render $scene $settings -o "$folder/b.exr" --dump "$folder/$name-stages"
+    went_well && [ -f "$folder/$name-stages/gbuffer/depth.exr" ] &&
+        cmp "$folder/$name-stages/$array.npy" "$cache/$array.npy"
+    result $? "$name: records are among the dumped stages"
+}
+good_caches irradiance-cache $box "$few" records/irradiance
+good_caches radiance-cache $shiny "$glossy" radiance_records/coefficient_gradient
+cache=$folder/irradiance-cache
+lights=$folder/radiance-cache
 
 # ---- what does not fit ----
 refuses "a cache over another" 3 "cache" render $box $few -o "$out/a.exr" --cache-out "$cache"
@@ -48,7 +61,18 @@ refuses "a place for it that is not there" 3 "nowhere" render $box $few -o "$out
 refuses "debug=error without a reference" 2 "reference" render $box $few -o "$out/a.exr" \
     --debug error
 refuses "a reference of another size" 2 "view.exr" render $box $few -o "$out/a.exr" --debug error \
-    --reference "$folder/view.exr"
+    --reference "$folder/irradiance-cache-view.exr"
+"$assay" render $shiny --size 12x12 --spp 1 --layers irradiance -o "$folder/irradiance.exr"
+refuses "a reference without the layer Indirect" 2 "Indirect" render $shiny $glossy -o "$out/a.exr" \
+    --debug error --reference "$folder/irradiance.exr"
+refuses "irradiance records for radiance records" 2 "content" render $box $glossy -o "$out/a.exr" \
+    --cache-in "$cache"
+refuses "radiance records for irradiance records" 2 "content" render $shiny $few -o "$out/a.exr" \
+    --cache-in "$lights"
+refuses "a cache of another order" 2 "order" render $shiny $glossy -o "$out/a.exr" --order 4 \
+    --cache-in "$lights"
+refuses "a cache of other gradients" 2 "coefficient_gradient" render $shiny $glossy -o "$out/a.exr" \
+    --coefficient-gradient points --cache-in "$lights"
 refuses "a reference that is no image" 2 "manifest" render $box $few -o "$out/a.exr" --debug error \
     --reference "$cache/manifest.json"
 refuses "r_min above r_max" 2 "r_min" render $box $few -o "$out/a.exr" --r-min 2 --r-max 1
@@ -61,12 +85,27 @@ for bad in "--a 0" "--a -1" "--a nan" "--theta-strata 1" "--phi-strata 1" "--the
 done
 
 # ---- spoiled caches ----
+edited() { # FILE COMMAND: the command writes x, which becomes the file, with its digest put right
+    old=$(sha256sum < "$1" | cut -c1-64)
+    eval "$2"
+    mv x "$1"
+    new=$(sha256sum < "$1" | cut -c1-64)
+    awk -v file="\"$1\"" -v old="$old" -v new="$new" \
+        'index($0, file) { hit = 1 } hit && index($0, old) { sub(old, new); hit = 0 } { print }' \
+        manifest.json > x
+    mv x manifest.json
+}
+zeroed() { # FILE: all of its values 0
+    head -c 128 "$1"
+    head -c $(($(wc -c < "$1") - 128)) /dev/zero
+}
 spoiled() { # NAME WORD COMMAND: runs in a copy of the cache
     rm -rf "$folder/spoiled"
-    cp -r "$cache" "$folder/spoiled"
+    cp -r "$from" "$folder/spoiled"
     (cd "$folder/spoiled" && eval "$3")
-    refuses "$1" 2 "$2" render $box $few -o "$out/a.exr" --cache-in "$folder/spoiled"
+    refuses "$1" 2 "$2" render $scene $settings -o "$out/a.exr" --cache-in "$folder/spoiled"
 }
+from=$cache scene=$box settings=$few
 spoiled "no manifest" "manifest.json" "rm manifest.json"
 spoiled "a manifest that is no JSON" "manifest.json" "echo '{' > manifest.json"
 spoiled "a manifest of something else" "bundle" "echo '{}' > manifest.json"
@@ -77,12 +116,13 @@ spoiled "an array that is not listed" "records/normal" "sed -i 's|records/normal
 spoiled "an array of another cache" "records/irradiance" \
     "cp records/position.npy records/irradiance.npy"
 spoiled "a cut array" "records/position" "head -c 300 records/position.npy > x; mv x records/position.npy"
-# With its digest put right: zero is no radius.
-spoiled "a record that cannot be" "record 0" 'old=$(sha256sum < records/radius.npy | cut -c1-64)
-    size=$(wc -c < records/radius.npy)
-    { head -c 128 records/radius.npy; head -c $((size - 128)) /dev/zero; } > x
-    mv x records/radius.npy
-    new=$(sha256sum < records/radius.npy | cut -c1-64)
-    awk -v old="$old" -v new="$new" "/records\\/radius/ { hit = 1 } hit && index(\$0, old) { sub(old, new); hit = 0 } { print }" manifest.json > x
-    mv x manifest.json'
+spoiled "a record that cannot be" "record 0" \
+    'edited records/radius.npy "zeroed records/radius.npy > x"'
+from=$lights scene=$shiny settings=$glossy
+coefficients=radiance_records/coefficients
+spoiled "no coefficients" "$coefficients" "rm $coefficients.npy"
+spoiled "coefficients of other records" "$coefficients" \
+    "cp radiance_records/coefficient_gradient.npy $coefficients.npy"
+spoiled "coefficients that are no numbers" "row 0" \
+    "edited $coefficients.npy '(zeroed $coefficients.npy | head -c 128; head -c $((8 * 27 * 1)) /dev/zero | tr \"\\0\" \"\\377\"; tail -c +345 $coefficients.npy) > x'"
 finish

@@ -14,7 +14,6 @@
 #include "core/numerics.h"
 #include "support/measure.h"
 #include "support/scene_builder.h"
-#include "support/temporary.h"
 
 /* A room with a lamp under its ceiling and a box of some material. */
 static assay_scene *room(assay_context *context, const char *material)
@@ -156,7 +155,7 @@ static void no_indirect_light(void **state)
     assay_context_destroy(context);
 }
 
-/* ---- passes, traversal, files ---- */
+/* ---- passes, traversal ---- */
 
 /* One pass shows another image with the very same records; traversal and layers: layers change no
  * record, traversal does. */
@@ -185,52 +184,12 @@ static void passes_and_traversal(void **state)
     assay_context_destroy(context);
 }
 
-/* A saved cache gives the same image, and needs no more records. */
-static void saved_caches(void **state)
-{
-    (void)state;
-    assay_context *context = measure_context(1);
-    assay_scene   *scene   = room(context, NULL);
-    temporary      t       = temporary_create();
-    char           folder[600];
-    snprintf(folder, sizeof folder, "%s", temporary_path(&t, "cache"));
-    for (int levels = 1; levels <= 2; levels++) {
-        const setting out[]  = {{"spp", "1"},
-                                {"a", "0.5"},
-                                {"theta_strata", "4"},
-                                {"phi_strata", "12"},
-                                {"secondary", levels > 1 ? "cache" : "path"},
-                                {"cache_out", folder},
-                                {NULL, NULL}};
-        const setting in[]   = {{"spp", "1"},
-                                {"a", "0.5"},
-                                {"theta_strata", "4"},
-                                {"phi_strata", "12"},
-                                {"secondary", levels > 1 ? "cache" : "path"},
-                                {"cache_in", folder},
-                                {NULL, NULL}};
-        assay_image  *made   = render(scene, CACHE, out, NULL);
-        assay_image  *loaded = render(scene, CACHE, in, NULL);
-        assert_true(measure_difference(made, loaded, "G") == 0.0);
-        assert_true(measure_difference(made, loaded, "IrradianceIndirect.R") == 0.0);
-        assay_image_destroy(made);
-        assay_image_destroy(loaded);
-        char command[700];
-        snprintf(command, sizeof command, "rm -r '%s'", folder);
-        assert_int_equal(system(command), 0);
-    }
-    temporary_destroy(&t);
-    assay_scene_destroy(scene);
-    assay_context_destroy(context);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_bounces),       cmocka_unit_test(one_indirect_bounce),
         cmocka_unit_test(three_bounces),     cmocka_unit_test(other_materials),
         cmocka_unit_test(no_indirect_light), cmocka_unit_test(passes_and_traversal),
-        cmocka_unit_test(saved_caches),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,36 +5,18 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/numerics.h"
-#include "methods/cache_debug.h"
-#include "methods/cache_file.h"
 #include "methods/cache_params.h"
+#include "methods/cache_session.h"
 
-static const assay_param_desc PARAMS[] = {
-    ASSAY_CACHE_PARAMS,
-    {"cache_in", ASSAY_PARAM_PATH, "", "", 0, 0, NULL,
-     "Folder of a saved cache to begin with, of the same scene and the same light.", ""},
-    {"cache_out", ASSAY_PARAM_PATH, "", "", 0, 0, NULL,
-     "Folder to make for the cache when the image is done.", ""},
-    {"debug", ASSAY_PARAM_CHOICE, "", "off", 0, 0, "off|records|weights|error",
-     "A picture instead of the colour: records and their zones, weights, or the error of the "
-     "indirect irradiance.",
-     "[gautron06] fig. 2.3"},
-    {"reference", ASSAY_PARAM_PATH, "", "", 0, 0, NULL,
-     "Image with the layer IrradianceIndirect that debug=error compares with.", ""},
-    {0},
-};
+static const assay_param_desc PARAMS[] = {ASSAY_CACHE_PARAMS, ASSAY_CACHE_SESSION_PARAMS, {0}};
 
 typedef struct {
     assay_context                  *context;
     const assay_world              *world;
     assay_irradiance_cache_settings settings;
     assay_cached_image_settings     image;
-    char                           *cache_in, *cache_out, *reference; /* or NULL */
-    assay_cache_debug_kind          debug_kind;
-    assay_cache_debug               debug;
+    assay_cache_session             session;
     assay_irradiance_cache         *cache;
-    assay_cache_point              *points; /* of a wave */
-    size_t                          capacity;
 } cache_state;
 
 static void destroy(void *state)
@@ -42,25 +24,9 @@ static void destroy(void *state)
     cache_state *s = state;
     if (s) {
         assay_irradiance_cache_destroy(s->cache);
-        assay_release(s->context, s->cache_in);
-        assay_release(s->context, s->cache_out);
-        assay_release(s->context, s->reference);
-        assay_cache_debug_close(&s->debug);
-        assay_release(s->context, s->points);
+        assay_cache_session_release(&s->session);
         assay_release(s->context, s);
     }
-}
-
-/* NULL where the parameter is empty. */
-static assay_status copy_path(assay_context *context, const assay_params *params, const char *name,
-                              char **path_out)
-{
-    const char *path = assay_params_text(params, name);
-    if (*path) {
-        *path_out = assay_copy_text(context, path);
-        return *path_out ? ASSAY_OK : assay_fail_memory(context, "a path");
-    }
-    return ASSAY_OK;
 }
 
 static assay_status create(assay_context *context, const assay_params *params, void **state_out)
@@ -71,10 +37,7 @@ static assay_status create(assay_context *context, const assay_params *params, v
     }
     state->context      = context;
     assay_status status = assay_cache_params_read(context, params, &state->settings, &state->image);
-    status = status ? status : copy_path(context, params, "cache_in", &state->cache_in);
-    status = status ? status : copy_path(context, params, "cache_out", &state->cache_out);
-    status = status ? status : copy_path(context, params, "reference", &state->reference);
-    state->debug_kind = (assay_cache_debug_kind)assay_params_choice(params, "debug");
+    status = status ? status : assay_cache_session_create(context, params, &state->session);
     if (status != ASSAY_OK) {
         destroy(state);
         return status;
@@ -83,17 +46,19 @@ static assay_status create(assay_context *context, const assay_params *params, v
     return ASSAY_OK;
 }
 
+static assay_cache_set caches_of(const cache_state *s)
+{
+    return (assay_cache_set){.settings = &s->settings, .irradiance = s->cache};
+}
+
 static assay_status prepare(void *state, const assay_frame *frame)
 {
-    cache_state *s      = state;
-    s->world            = frame->world;
-    assay_status status = assay_cache_debug_open(frame, s->debug_kind, s->reference, &s->debug);
-    status =
-        status ? status
-               : assay_irradiance_cache_create(frame->world, &s->settings, frame->seed, &s->cache);
-    return status || !s->cache_in
-               ? status
-               : assay_cache_file_read(frame, &s->settings, s->cache_in, s->cache);
+    cache_state *s = state;
+    s->world       = frame->world;
+    assay_status status =
+        assay_irradiance_cache_create(frame->world, &s->settings, frame->seed, &s->cache);
+    const assay_cache_set caches = caches_of(s);
+    return status ? status : assay_cache_session_begin(&s->session, frame, &caches);
 }
 
 /* ---- light for the image ---- */
@@ -101,24 +66,11 @@ static assay_status prepare(void *state, const assay_frame *frame)
 static assay_status fill(void *user, const char *phase, uint64_t before, uint64_t total,
                          size_t count, const assay_cached_point *points, uint32_t *limits_out)
 {
-    cache_state *s     = user;
-    void        *grown = s->points;
-    if (assay_grow(s->context, &grown, &s->capacity, count, sizeof *s->points) != ASSAY_OK) {
-        return assay_fail_memory(s->context, "visible points");
-    }
-    s->points = grown;
-    for (size_t i = 0; i < count; i++) {
-        s->points[i] = (assay_cache_point){0};
-        if (points[i].hit) {
-            s->points[i] = (assay_cache_point){
-                .site      = assay_gather_site_of(&points[i].vertex),
-                .footprint = points[i].footprint,
-                .wanted =
-                    points[i].centre || !rgb_is_black(assay_cached_point_lambert(&points[i]))};
-        }
-    }
-    return assay_irradiance_cache_fill(s->cache, phase, before, total, count, s->points,
-                                       limits_out);
+    cache_state       *s      = user;
+    const assay_status status = assay_cache_session_ask(&s->session, count, points);
+    return status ? status
+                  : assay_irradiance_cache_fill(s->cache, phase, before, total, count,
+                                                s->session.points, limits_out);
 }
 
 static assay_status irradiance(void *user, const assay_cached_point *point, uint32_t limit,
@@ -156,7 +108,8 @@ static assay_status picture(void *user, const assay_cached_point *point, uint32_
                             assay_rgb color, assay_rgb *picture_out)
 {
     const cache_state *s = user;
-    return assay_cache_debug_paint(&s->debug, s->cache, point, limit, worker, color, picture_out);
+    return assay_cache_debug_paint(&s->session.debug, s->cache, point, limit, worker, color,
+                                   picture_out);
 }
 
 static void report(const cache_state *s)
@@ -170,42 +123,23 @@ static void report(const cache_state *s)
     }
 }
 
-static assay_status render_image(cache_state *s, const assay_frame *frame, assay_film *film,
-                                 assay_ray_counts *counts)
-{
-    const assay_cached_light light = {
-        .user       = s,
-        .fill       = fill,
-        .radiance   = radiance,
-        .irradiance = irradiance,
-        .picture    = s->debug_kind == ASSAY_CACHE_DEBUG_OFF ? NULL : picture,
-    };
-    assay_status status = assay_cached_image_render(frame, &s->image, &light, film, counts);
-    assay_irradiance_cache_count(s->cache, counts);
-    if (status == ASSAY_OK) {
-        report(s);
-    }
-    if (status == ASSAY_OK && frame->dump) {
-        status = assay_cache_file_add(s->context, frame->dump, s->cache);
-    }
-    return status;
-}
-
 static assay_status render(void *state, const assay_frame *frame, assay_film *film,
                            assay_ray_counts *counts)
 {
-    cache_state  *s      = state;
-    assay_bundle *saved  = NULL;
-    assay_status  status = ASSAY_OK;
-    if (s->cache_out) {
-        status = assay_cache_file_create(frame, &s->settings, s->cache_out, &saved);
+    cache_state             *s      = state;
+    const assay_cache_set    caches = caches_of(s);
+    const assay_cached_light light  = {
+         .user       = s,
+         .fill       = fill,
+         .radiance   = radiance,
+         .irradiance = irradiance,
+         .picture    = s->session.debug_kind == ASSAY_CACHE_DEBUG_OFF ? NULL : picture,
+    };
+    const assay_status status =
+        assay_cache_session_render(&s->session, frame, &caches, &s->image, &light, film, counts);
+    if (status == ASSAY_OK) {
+        report(s);
     }
-    status = status ? status : render_image(s, frame, film, counts);
-    if (saved && status == ASSAY_OK) {
-        status = assay_cache_file_add(s->context, saved, s->cache);
-        status = status ? status : assay_bundle_finish(saved);
-    }
-    assay_bundle_destroy(saved);
     return status;
 }
 

@@ -6,16 +6,13 @@
  * both parts always add up to f, whatever the Lambertian is. */
 #include "methods/radiance_cache/radiance_cache_method.h"
 
-#include <string.h>
-
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/numerics.h"
-#include "methods/cache_file.h"
 #include "methods/cache_params.h"
+#include "methods/cache_session.h"
 #include "methods/radiance_cache/glossy_materials.h"
 #include "record/radiance_cache.h"
-#include "record/record_bundle.h"
 
 enum { MOST_ORDER = 20 };
 
@@ -45,6 +42,7 @@ static const assay_param_desc PARAMS[] = {
     {"nodes", ASSAY_PARAM_INT, "", "48", 8, 512, NULL,
      "Gauss nodes in the polar angle (twice as many in azimuth) for a BRDF's coefficients.",
      "[gautron06] eq. 3.34"},
+    ASSAY_CACHE_SESSION_PARAMS,
     {0},
 };
 
@@ -69,13 +67,13 @@ typedef struct {
     double                        glossy_accuracy;
     assay_irradiance_cache       *irradiance;
     assay_radiance_cache         *radiance; /* NULL: no material is within reach */
+    assay_cache_session           session;
     glossy_materials              materials;
     desk                         *desks;
     /* of a wave */
-    assay_cache_point *points;
-    uint32_t          *limits;
-    made_so_far       *made;
-    size_t             point_capacity, limit_capacity, made_capacity, made_count;
+    uint32_t    *limits;
+    made_so_far *made;
+    size_t       limit_capacity, made_capacity, made_count;
 } cache_state;
 
 static void release_desks(cache_state *s)
@@ -95,7 +93,7 @@ static void destroy(void *state)
         glossy_materials_release(&s->materials);
         assay_radiance_cache_destroy(s->radiance);
         assay_irradiance_cache_destroy(s->irradiance);
-        assay_release(s->context, s->points);
+        assay_cache_session_release(&s->session);
         assay_release(s->context, s->limits);
         assay_release(s->context, s->made);
         assay_release(s->context, s);
@@ -127,6 +125,7 @@ static assay_status create(assay_context *context, const assay_params *params, v
     status =
         status ? status
                : assay_cache_params_read(context, params, &state->settings.records, &state->image);
+    status = status ? status : assay_cache_session_create(context, params, &state->session);
     if (status != ASSAY_OK) {
         destroy(state);
         return status;
@@ -166,19 +165,30 @@ static assay_status make_materials(cache_state *s)
     return status;
 }
 
-static assay_status prepare(void *state, const assay_frame *frame)
+static assay_cache_set caches_of(const cache_state *s)
 {
-    cache_state *s      = state;
-    s->world            = frame->world;
-    assay_status status = s->materials.grids ? ASSAY_OK : make_materials(s);
-    status              = status ? status
-                                 : assay_irradiance_cache_create(frame->world, &s->settings.records, frame->seed,
-                                                                 &s->irradiance);
+    return (assay_cache_set){&s->settings.records, &s->settings, s->irradiance, s->radiance};
+}
+
+static assay_status make_caches(cache_state *s, const assay_frame *frame)
+{
+    assay_status status = assay_irradiance_cache_create(frame->world, &s->settings.records,
+                                                        frame->seed, &s->irradiance);
     if (status != ASSAY_OK || !s->materials.any) {
         return status;
     }
     status = assay_radiance_cache_create(s->context, s->irradiance, &s->settings, &s->radiance);
     return status ? status : make_desks(s);
+}
+
+static assay_status prepare(void *state, const assay_frame *frame)
+{
+    cache_state *s               = state;
+    s->world                     = frame->world;
+    assay_status status          = make_materials(s);
+    status                       = status ? status : make_caches(s, frame);
+    const assay_cache_set caches = caches_of(s);
+    return status ? status : assay_cache_session_begin(&s->session, frame, &caches);
 }
 
 /* ---- filling ---- */
@@ -190,14 +200,11 @@ static const assay_material_grids *grids_at(const cache_state *s, const assay_ca
 
 static assay_status make_room(cache_state *s, size_t count)
 {
-    void        *points = s->points, *limits = s->limits, *made = s->made;
+    void        *limits = s->limits, *made = s->made;
     assay_status status =
-        assay_grow(s->context, &points, &s->point_capacity, count, sizeof *s->points);
-    status = status ? status
-                    : assay_grow(s->context, &limits, &s->limit_capacity, count, sizeof *s->limits);
+        assay_grow(s->context, &limits, &s->limit_capacity, count, sizeof *s->limits);
     status =
         status ? status : assay_grow(s->context, &made, &s->made_capacity, count, sizeof *s->made);
-    s->points = points;
     s->limits = limits;
     s->made   = made;
     return status ? assay_fail_memory(s->context, "visible points") : ASSAY_OK;
@@ -206,29 +213,22 @@ static assay_status make_room(cache_state *s, size_t count)
 static assay_status fill(void *user, const char *phase, uint64_t before, uint64_t total,
                          size_t count, const assay_cached_point *points, uint32_t *limits_out)
 {
-    cache_state *s      = user;
-    assay_status status = make_room(s, count);
-    for (size_t i = 0; i < count && status == ASSAY_OK; i++) {
-        s->points[i] = (assay_cache_point){0};
-        if (points[i].hit) {
-            s->points[i] = (assay_cache_point){
-                .site      = assay_gather_site_of(&points[i].vertex),
-                .footprint = points[i].footprint,
-                .wanted =
-                    points[i].centre || !rgb_is_black(assay_cached_point_lambert(&points[i]))};
-        }
-    }
+    cache_state       *s      = user;
+    assay_cache_point *asked  = NULL;
+    assay_status       status = make_room(s, count);
+    status = status ? status : assay_cache_session_ask(&s->session, count, points);
+    asked  = s->session.points;
     status = status ? status
-                    : assay_irradiance_cache_fill(s->irradiance, phase, before, total, count,
-                                                  s->points, limits_out);
+                    : assay_irradiance_cache_fill(s->irradiance, phase, before, total, count, asked,
+                                                  limits_out);
     if (status != ASSAY_OK || !s->radiance) {
         return status;
     }
     for (size_t i = 0; i < count; i++) {
-        s->points[i].wanted = grids_at(s, &points[i]) != NULL;
+        asked[i].wanted = grids_at(s, &points[i]) != NULL;
     }
     status = assay_irradiance_cache_fill(assay_radiance_cache_records(s->radiance), phase, before,
-                                         total, count, s->points, s->limits);
+                                         total, count, asked, s->limits);
     for (size_t i = 0; i < count && status == ASSAY_OK; i++) {
         s->made[i] = (made_so_far){limits_out[i], s->limits[i]};
         limits_out[i] += s->limits[i];
@@ -292,11 +292,12 @@ static assay_rgb not_negative(assay_rgb c)
     return rgb(c.r > 0.0 ? c.r : 0.0, c.g > 0.0 ? c.g : 0.0, c.b > 0.0 ? c.b : 0.0);
 }
 
-static assay_status radiance(void *user, const assay_cached_point *point, uint32_t limit,
-                             assay_random *random, assay_ray_counts *counts, int worker,
-                             assay_rgb *radiance_out)
+/* What the caches say of the light towards the viewer; *found_out false, and the Lambertian's share
+ * alone, where the rest of it is none of theirs. */
+static assay_status cached_radiance(const cache_state *s, const assay_cached_point *point,
+                                    uint32_t limit, int worker, assay_rgb *radiance_out,
+                                    bool *found_out)
 {
-    const cache_state          *s       = user;
     const made_so_far           made    = made_within(s, limit);
     const assay_material_grids *grids   = grids_at(s, point);
     const assay_rgb             lambert = assay_cached_point_lambert(point);
@@ -310,16 +311,56 @@ static assay_status radiance(void *user, const assay_cached_point *point, uint32
     if (grids && status == ASSAY_OK) {
         status = gloss(s, grids, point, made.radiance, worker, &rest, &found);
     }
-    if (!found && status == ASSAY_OK && point->vertex.bsdf.model != ASSAY_BSDF_LAMBERT) {
-        rest = assay_path_indirect(s->world, &s->settings.records.path, &point->vertex, lambert,
-                                   random, counts);
+    if (status == ASSAY_OK) {
+        sum           = rgb_add(sum, rest);
+        *radiance_out = found && s->settings.records.rules.clamp_negative ? not_negative(sum) : sum;
+        *found_out    = found;
     }
+    return status;
+}
+
+static assay_status radiance(void *user, const assay_cached_point *point, uint32_t limit,
+                             assay_random *random, assay_ray_counts *counts, int worker,
+                             assay_rgb *radiance_out)
+{
+    const cache_state *s      = user;
+    assay_rgb          sum    = rgb_grey(0.0);
+    bool               found  = false;
+    const assay_status status = cached_radiance(s, point, limit, worker, &sum, &found);
     if (status != ASSAY_OK) {
         return status;
     }
-    sum           = rgb_add(sum, rest);
-    *radiance_out = found && s->settings.records.rules.clamp_negative ? not_negative(sum) : sum;
+    if (!found && point->vertex.bsdf.model != ASSAY_BSDF_LAMBERT) {
+        const assay_rgb lambert = assay_cached_point_lambert(point);
+        sum = rgb_add(sum, assay_path_indirect(s->world, &s->settings.records.path, &point->vertex,
+                                               lambert, random, counts));
+    }
+    *radiance_out = sum;
     return ASSAY_OK;
+}
+
+/* On surfaces within reach what the radiance records do, elsewhere the irradiance records. */
+static assay_status picture(void *user, const assay_cached_point *point, uint32_t limit, int worker,
+                            assay_rgb color, assay_rgb *picture_out)
+{
+    const cache_state       *s     = user;
+    const assay_cache_debug *debug = &s->session.debug;
+    const made_so_far        made  = made_within(s, limit);
+    if (!grids_at(s, point)) {
+        return assay_cache_debug_paint(debug, s->irradiance, point, made.irradiance, worker, color,
+                                       picture_out);
+    }
+    if (debug->kind != ASSAY_CACHE_DEBUG_ERROR) {
+        return assay_cache_debug_paint(debug, assay_radiance_cache_records(s->radiance), point,
+                                       made.radiance, worker, color, picture_out);
+    }
+    assay_rgb          light  = rgb_grey(0.0);
+    bool               found  = false;
+    const assay_status status = cached_radiance(s, point, limit, worker, &light, &found);
+    if (status == ASSAY_OK) {
+        *picture_out = assay_cache_debug_error(&debug->radiance, point->pixel, light.g);
+    }
+    return status;
 }
 
 static void report(const cache_state *s)
@@ -341,55 +382,24 @@ static void report(const cache_state *s)
     }
 }
 
-/* The coefficients of all records, a row each: 3 n^2. */
-static assay_status dump_coefficients(const cache_state *s, assay_bundle *bundle)
-{
-    assay_irradiance_cache *records = assay_radiance_cache_records(s->radiance);
-    const uint32_t          rows  = assay_record_store_count(assay_irradiance_cache_store(records));
-    const size_t            size  = 3 * assay_basis_count(assay_radiance_cache_basis(s->radiance));
-    assay_array            *table = NULL;
-    if (rows == 0) {
-        return ASSAY_OK;
-    }
-    assay_status status = assay_array_create(s->context, rows, size, &table);
-    for (uint32_t i = 0; i < rows && status == ASSAY_OK; i++) {
-        memcpy(assay_array_data(table) + i * size,
-               assay_radiance_cache_coefficients(s->radiance, i), size * sizeof(double));
-    }
-    status = status ? status
-                    : assay_bundle_add_table(bundle, "radiance_records/coefficients", "W/(m2 sr)",
-                                             table);
-    assay_array_destroy(table);
-    return status;
-}
-
-static assay_status dump(const cache_state *s, assay_bundle *bundle)
-{
-    assay_status status = assay_cache_file_add(s->context, bundle, s->irradiance);
-    if (status != ASSAY_OK || !s->radiance) {
-        return status;
-    }
-    status = assay_record_bundle_add(
-        s->context, bundle, "radiance_records",
-        assay_irradiance_cache_store(assay_radiance_cache_records(s->radiance)));
-    return status ? status : dump_coefficients(s, bundle);
-}
-
 static assay_status render(void *state, const assay_frame *frame, assay_film *film,
                            assay_ray_counts *counts)
 {
-    cache_state             *s     = state;
-    const assay_cached_light light = {
-        .user = s, .fill = fill, .radiance = radiance, .irradiance = irradiance};
-    assay_status status = assay_cached_image_render(frame, &s->image, &light, film, counts);
-    assay_irradiance_cache_count(s->irradiance, counts);
-    if (s->radiance) {
-        assay_irradiance_cache_count(assay_radiance_cache_records(s->radiance), counts);
-    }
+    cache_state             *s      = state;
+    const assay_cache_set    caches = caches_of(s);
+    const assay_cached_light light  = {
+         .user       = s,
+         .fill       = fill,
+         .radiance   = radiance,
+         .irradiance = irradiance,
+         .picture    = s->session.debug_kind == ASSAY_CACHE_DEBUG_OFF ? NULL : picture,
+    };
+    const assay_status status =
+        assay_cache_session_render(&s->session, frame, &caches, &s->image, &light, film, counts);
     if (status == ASSAY_OK) {
         report(s);
     }
-    return status == ASSAY_OK && frame->dump ? dump(s, frame->dump) : status;
+    return status;
 }
 
 const assay_method assay_method_radiance_cache = {
