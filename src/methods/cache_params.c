@@ -1,6 +1,8 @@
 /* cache_params.c - from parameters to the settings of caches. */
 #include "methods/cache_params.h"
 
+#include <string.h>
+
 #include "core/context.h"
 
 /* 0 stands for no limit. */
@@ -30,6 +32,15 @@ static assay_record_rules rules_of(const assay_params *params)
         .in_front       = assay_params_bool(params, "in_front"),
         .clamp_negative = assay_params_bool(params, "clamp_negative"),
     };
+}
+
+static int passes_of(const assay_params *params)
+{
+    const assay_param_desc *row = assay_params_table(params);
+    while (row->name && strcmp(row->name, "passes") != 0) {
+        row++;
+    }
+    return row->name ? assay_params_int(params, "passes") : 2;
 }
 
 assay_status assay_cache_params_read(assay_context *context, const assay_params *params,
@@ -70,7 +81,7 @@ assay_status assay_cache_params_read(assay_context *context, const assay_params 
         .path   = path,
         .spp    = (uint32_t)assay_params_int(params, "spp"),
         .order  = (assay_pixel_order)assay_params_choice(params, "traversal"),
-        .passes = assay_params_int(params, "passes"),
+        .passes = passes_of(params),
     };
     return ASSAY_OK;
 }

@@ -8,7 +8,8 @@
 #include "methods/cache_params.h"
 #include "methods/cache_session.h"
 
-static const assay_param_desc PARAMS[] = {ASSAY_CACHE_PARAMS, ASSAY_CACHE_SESSION_PARAMS, {0}};
+static const assay_param_desc PARAMS[] = {
+    ASSAY_CACHE_PARAMS, ASSAY_CACHE_PASSES_PARAM, ASSAY_CACHE_SESSION_PARAMS, {0}};
 
 typedef struct {
     assay_context                  *context;
