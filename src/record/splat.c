@@ -100,6 +100,13 @@ void assay_splat_buffer_set(assay_splat_buffer *buffer, size_t pixel, assay_vec3
     buffer->nz[pixel] = normal.z;
 }
 
+bool assay_splat_has_point(const assay_splat_buffer *buffer, size_t pixel)
+{
+    return !isnan(buffer->x[pixel]);
+}
+
+assay_context *assay_splat_context(const assay_splat_buffer *buffer) { return buffer->context; }
+
 static assay_vec3 position_of(const assay_splat_buffer *buffer, size_t pixel)
 {
     return vec3(buffer->x[pixel], buffer->y[pixel], buffer->z[pixel]);
@@ -114,7 +121,7 @@ static assay_status measure_rows(void *user, uint64_t chunk, int worker)
         buffer->row_stray[y] = 0.0;
         for (int x = 0; x < buffer->width; x++) {
             const size_t pixel = (size_t)y * (size_t)buffer->width + (size_t)x;
-            if (!isnan(buffer->x[pixel])) {
+            if (assay_splat_has_point(buffer, pixel)) {
                 buffer->row_stray[y] =
                     fmax(buffer->row_stray[y],
                          assay_splat_stray(&buffer->view, x, y, position_of(buffer, pixel)));

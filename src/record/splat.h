@@ -34,6 +34,10 @@ void assay_splat_buffer_set(assay_splat_buffer *buffer, size_t pixel, assay_vec3
  * anything is splatted.  Clears the sums. */
 assay_status assay_splat_buffer_close(assay_splat_buffer *buffer);
 
+bool assay_splat_has_point(const assay_splat_buffer *buffer, size_t pixel);
+
+assay_context *assay_splat_context(const assay_splat_buffer *buffer);
+
 /* ---- sums ---- */
 
 typedef enum {
