@@ -39,6 +39,7 @@ void splat_layer_close(assay_context *context, splat_layer *layer)
         assay_splat_buffer_destroy(layer->buffer);
         assay_release(context, layer->fate);
     }
+    *layer = (splat_layer){0};
 }
 
 static uint32_t count_of(const splat_layer *layer)
@@ -69,8 +70,8 @@ static assay_status serve(splat_layer *layer, const splat_rules *rules, const sp
         return ASSAY_OK;
     }
     assay_status status = assay_irradiance_cache_make(layer->cache, &order->points[pixel]);
-    status = status ? status
-                    : assay_splat_records(layer->buffer, &layer->source, number, number + 1);
+    status =
+        status ? status : assay_splat_records(layer->buffer, &layer->source, number, number + 1);
     if (status != ASSAY_OK) {
         return status;
     }

@@ -28,8 +28,8 @@ typedef struct {
     assay_irradiance_cache *cache;  /* borrowed */
     assay_splat_buffer     *buffer; /* owned    */
     assay_splat_source      source;
-    uint8_t                *fate;   /* a pixel: of the last filling */
-    uint32_t                made;   /* this frame                   */
+    uint8_t                *fate; /* a pixel: of the last filling */
+    uint32_t                made; /* this frame                   */
 } splat_layer;
 
 /* Told after the old records (step 2), after every batch of new ones, and at the end. */
