@@ -29,6 +29,7 @@ assay_status splat_layer_open(assay_context *context, int width, int height,
     }
     layer.source.store = assay_irradiance_cache_store(cache);
     layer.source.rules = *assay_record_store_rules(layer.source.store);
+    layer.old          = assay_record_store_count(layer.source.store);
     *layer_out         = layer;
     return ASSAY_OK;
 }
@@ -117,7 +118,7 @@ static assay_status detect_again(splat_layer *layer, const splat_rules *rules,
 }
 
 /* Step 5, and figure 4.12. */
-static assay_status finish(splat_layer *layer, const splat_rules *rules, uint32_t old)
+static assay_status finish(splat_layer *layer, const splat_rules *rules)
 {
     assay_splat_source source = layer->source;
     const bool         other  = rules->accuracy > 0.0 && rules->accuracy != source.rules.a;
@@ -128,7 +129,7 @@ static assay_status finish(splat_layer *layer, const splat_rules *rules, uint32_
     source.rules.a = other ? rules->accuracy : source.rules.a;
     assay_splat_buffer_clear(layer->buffer);
     if (rules->variant == SPLAT_PUBLISHED) {
-        status = assay_splat_records(layer->buffer, &source, 0, old);
+        status = assay_splat_records(layer->buffer, &source, 0, layer->old);
     }
     return status ? status : assay_splat_records(layer->buffer, &source, 0, count_of(layer));
 }
@@ -136,17 +137,17 @@ static assay_status finish(splat_layer *layer, const splat_rules *rules, uint32_
 assay_status splat_layer_fill(splat_layer *layer, const splat_rules *rules,
                               const splat_order *order, const splat_listener *listener)
 {
-    const uint32_t old    = count_of(layer);
-    assay_status   status = assay_splat_buffer_close(layer->buffer);
-    layer->source.bounds  = rules->bounds;
+    assay_status status  = assay_splat_buffer_close(layer->buffer);
+    layer->source.bounds = rules->bounds;
     for (size_t i = 0; i < order->count; i++) {
         layer->fate[order->pixels[i]] = SPLAT_COVERED;
     }
-    status = status ? status : assay_splat_records(layer->buffer, &layer->source, 0, old);
+    status =
+        status ? status : assay_splat_records(layer->buffer, &layer->source, 0, count_of(layer));
     status = status ? status : tell(listener, layer);
     if (status == ASSAY_OK) {
         status = (rules->again ? detect_again : detect)(layer, rules, order, listener);
     }
-    status = status ? status : finish(layer, rules, old);
+    status = status ? status : finish(layer, rules);
     return status ? status : tell(listener, layer);
 }

@@ -29,7 +29,8 @@ typedef struct {
     assay_splat_buffer     *buffer; /* owned    */
     assay_splat_source      source;
     uint8_t                *fate; /* a pixel: of the last filling */
-    uint32_t                made; /* this frame                   */
+    uint32_t                old;  /* records when the layer was opened */
+    uint32_t                made; /* since then                        */
 } splat_layer;
 
 /* Told after the old records (step 2), after every batch of new ones, and at the end. */
@@ -38,7 +39,7 @@ typedef struct {
     void *user;
 } splat_listener;
 
-/* say, user: as of assay_splat_source.  Zeros are a layer that may be closed.  Errors: MEMORY. */
+/* For a frame.  Zeros are a layer that may be closed.  Errors: MEMORY. */
 assay_status splat_layer_open(assay_context *context, int width, int height,
                               assay_irradiance_cache *cache, splat_layer *layer_out);
 void         splat_layer_close(assay_context *context, splat_layer *layer);
