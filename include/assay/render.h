@@ -73,12 +73,32 @@ typedef struct {
     int      threads;
 } assay_render_stats;
 
-/* Renders the scene at its current time.  stats_out may be NULL.  Memory for all pixels is asked
- * for before the work begins.  Errors: ARGUMENT, MEMORY, LIMIT, WRITE (the dump), DOMAIN (light
- * that is no finite number), CANCELLED. */
+/* Renders the scene at its current time: a sequence of one image.  stats_out may be NULL.  Memory
+ * for all pixels is asked for before the work begins.  Errors: ARGUMENT, MEMORY, LIMIT, WRITE (the
+ * dump), DOMAIN (light that is no finite number), CANCELLED. */
 ASSAY_API assay_status assay_render(assay_scene *scene, const char *method,
                                     const assay_params *params, const assay_render_options *options,
                                     assay_image **image_out, assay_render_stats *stats_out);
+
+/* Frames of a scene, one after another, by one method: what the method learned of the light stays
+ * as long as nothing but cameras moves (caches keep their records, and the tree of triangles is
+ * kept), and is dropped when a triangle or a light does.  So an image may depend on those before
+ * it; how is told by the method's page. */
+typedef struct assay_sequence assay_sequence;
+
+/* The scene and the parameters must outlive it, and only the scene's time may change.  Errors:
+ * ARGUMENT, MEMORY. */
+ASSAY_API assay_status assay_sequence_create(assay_scene *scene, const char *method,
+                                             const assay_params *params,
+                                             assay_sequence    **sequence_out);
+/* The next image, of the scene's current time, as by assay_render; last: none comes after it, so
+ * that what is kept to the end is written now.  After an error the sequence may only be destroyed.
+ */
+ASSAY_API assay_status assay_sequence_render(assay_sequence             *sequence,
+                                             const assay_render_options *options, bool last,
+                                             assay_image       **image_out,
+                                             assay_render_stats *stats_out);
+ASSAY_API void         assay_sequence_destroy(assay_sequence *sequence);
 
 /* Irradiance at points.  points: rows of x y z nx ny nz (m; normals are normalised).  The result
  * has a row a point; its columns are named by assay_probe_column_name. Gradients are

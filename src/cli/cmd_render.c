@@ -14,6 +14,7 @@ typedef struct {
     assay_context            *context;
     assay_scene              *scene;
     assay_params             *params;
+    assay_sequence           *sequence; /* of images, not of probes */
     assay_render_stats        stats;
     double                    seconds_load, seconds_write;
 } render_job;
@@ -117,15 +118,14 @@ typedef struct {
     char output[PATH_SIZE], png[PATH_SIZE], stats[PATH_SIZE], dump[PATH_SIZE];
 } frame_files;
 
-static assay_status render_image(render_job *job, const frame_files *files)
+static assay_status render_image(render_job *job, bool last, const frame_files *files)
 {
     const cli_render_request *r       = job->request;
     assay_render_options      options = r->render;
     assay_image              *image   = NULL;
     options.dump                      = files->dump[0] ? files->dump : NULL;
-    assay_status status =
-        assay_render(job->scene, r->method, job->params, &options, &image, &job->stats);
-    const double start = now();
+    assay_status status = assay_sequence_render(job->sequence, &options, last, &image, &job->stats);
+    const double start  = now();
     if (status == ASSAY_OK) {
         status = assay_image_write_exr(image, files->output);
     }
@@ -201,7 +201,8 @@ static assay_status render_frame(render_job *job, long frame)
     const double time   = r->has_frames ? (double)frame / r->fps : r->time;
     assay_status status = assay_scene_set_time(job->scene, time);
     if (status == ASSAY_OK) {
-        status = r->points ? render_points(job, files.output) : render_image(job, &files);
+        status = r->points ? render_points(job, files.output)
+                           : render_image(job, frame == r->last_frame, &files);
     }
     if (status == ASSAY_OK && r->stats) {
         status = write_stats(job, files.stats);
@@ -221,6 +222,9 @@ static assay_status render_all(render_job *job)
         status = assay_scene_load(job->context, r->scene, &r->scene_options.options, &job->scene);
     }
     job->seconds_load = now() - start;
+    if (status == ASSAY_OK && !r->points) {
+        status = assay_sequence_create(job->scene, r->method, job->params, &job->sequence);
+    }
     for (long f = r->first_frame; f <= r->last_frame && status == ASSAY_OK; f++) {
         status = render_frame(job, f);
     }
@@ -277,6 +281,7 @@ int cli_render(int count, char **argv)
     }
     render_job job = {.request = &request, .console = &console, .context = context};
     code           = cli_console_finish(&console, context, render_all(&job));
+    assay_sequence_destroy(job.sequence);
     assay_params_destroy(job.params);
     assay_scene_destroy(job.scene);
     assay_context_destroy(context);

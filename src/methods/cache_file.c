@@ -8,12 +8,13 @@
 #include "io/bundle_read.h"
 #include "record/radiance_bundle.h"
 #include "record/record_bundle.h"
+#include "scene/scene_moment.h"
 
 /* What the records' light depends on; the last two of radiance records alone. */
 enum { KEY_COUNT = 7, IRRADIANCE_KEYS = 5, TEXT_SIZE = 80 };
 
 static const char *const KEYS[KEY_COUNT] = {
-    "content",   "scene.digest", "scene.time",          "bounces",
+    "content",   "scene.digest", "scene.moment",        "bounces",
     "secondary", "order",        "coefficient_gradient"};
 
 static const char RADIANCE_PREFIX[] = "radiance_records";
@@ -33,7 +34,7 @@ static description describe(const assay_frame *frame, const assay_cache_set *cac
     snprintf(d.values[0], TEXT_SIZE,
              caches->glossy ? "irradiance and radiance records" : "irradiance records");
     snprintf(d.values[1], TEXT_SIZE, "%s", scene->digest);
-    snprintf(d.values[2], TEXT_SIZE, "%.17g", scene->time);
+    assay_scene_moment(scene, d.values[2]);
     snprintf(d.values[3], TEXT_SIZE, bounces == ASSAY_BOUNCES_INF ? "inf" : "%d", bounces);
     snprintf(d.values[4], TEXT_SIZE, "%s", secondary[caches->settings->secondary]);
     if (caches->glossy) {
@@ -69,21 +70,16 @@ assay_status assay_cache_file_add(assay_context *context, assay_bundle *bundle,
                : assay_radiance_bundle_add(context, bundle, RADIANCE_PREFIX, caches->radiance);
 }
 
-assay_status assay_cache_file_create(const assay_frame *frame, const assay_cache_set *caches,
-                                     const char *path, assay_bundle **bundle_out)
+assay_status assay_cache_file_finish(const assay_frame *frame, const assay_cache_set *caches,
+                                     assay_bundle *bundle)
 {
     const description d      = describe(frame, caches);
-    assay_bundle     *bundle = NULL;
-    assay_status      status = assay_bundle_create(frame->context, path, &bundle);
+    assay_status      status = ASSAY_OK;
     for (int i = 0; i < d.count && status == ASSAY_OK; i++) {
         status = assay_bundle_describe(bundle, KEYS[i], d.values[i]);
     }
-    if (status != ASSAY_OK) {
-        assay_bundle_destroy(bundle);
-        return status;
-    }
-    *bundle_out = bundle;
-    return ASSAY_OK;
+    status = status ? status : assay_cache_file_add(frame->context, bundle, caches);
+    return status ? status : assay_bundle_finish(bundle);
 }
 
 static assay_status check(const assay_frame *frame, const assay_cache_set *caches,

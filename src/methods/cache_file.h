@@ -19,11 +19,11 @@ typedef struct {
 assay_status assay_cache_file_add(assay_context *context, assay_bundle *bundle,
                                   const assay_cache_set *caches);
 
-/* Begins a bundle that holds caches, with what their light depends on: the scene (files, options,
- * time), bounces and secondary, order and gradients of coefficients.  Made before the work, so that
- * a bad path is known at once; to be completed by assay_cache_file_add and assay_bundle_finish. */
-assay_status assay_cache_file_create(const assay_frame *frame, const assay_cache_set *caches,
-                                     const char *path, assay_bundle **bundle_out);
+/* Describes what the caches' light depends on (the scene: files, options, what its time makes of
+ * it; bounces and secondary, order and gradients of coefficients), adds them, and finishes the
+ * bundle.  Errors: WRITE, MEMORY. */
+assay_status assay_cache_file_finish(const assay_frame *frame, const assay_cache_set *caches,
+                                     assay_bundle *bundle);
 
 /* Fills empty caches with saved records; on error they may only be destroyed.  Errors: ARGUMENT
  * (made for other light), NOT_FOUND, FORMAT, LIMIT, MEMORY. */

@@ -43,18 +43,36 @@ void assay_cache_session_release(assay_cache_session *session)
         assay_release(session->context, session->reference);
         assay_release(session->context, session->points);
         assay_cache_debug_close(&session->debug);
+        assay_bundle_destroy(session->saved);
     }
 }
 
 /* ---- a frame ---- */
 
+static void restart_counts(const assay_cache_set *caches)
+{
+    assay_irradiance_cache_restart_counts(caches->irradiance);
+    if (caches->radiance) {
+        assay_irradiance_cache_restart_counts(assay_radiance_cache_records(caches->radiance));
+    }
+}
+
 assay_status assay_cache_session_begin(assay_cache_session *session, const assay_frame *frame,
                                        const assay_cache_set *caches)
 {
+    assay_cache_debug_close(&session->debug);
+    session->debug      = (assay_cache_debug){0};
     assay_status status = assay_cache_debug_open(frame, session->debug_kind, session->reference,
                                                  caches->glossy != NULL, &session->debug);
-    return status || !session->cache_in ? status
-                                        : assay_cache_file_read(frame, caches, session->cache_in);
+    if (frame->frames_before > 0) {
+        restart_counts(caches);
+    } else if (session->cache_in && status == ASSAY_OK) {
+        status = assay_cache_file_read(frame, caches, session->cache_in);
+    }
+    if (session->cache_out && !session->saved && status == ASSAY_OK) {
+        status = assay_bundle_create(session->context, session->cache_out, &session->saved);
+    }
+    return status;
 }
 
 assay_status assay_cache_session_ask(assay_cache_session *session, size_t count,
@@ -94,21 +112,17 @@ static assay_status render_image(const assay_cache_session *session, const assay
                                   : assay_cache_file_add(session->context, frame->dump, caches);
 }
 
-assay_status assay_cache_session_render(const assay_cache_session *session,
-                                        const assay_frame *frame, const assay_cache_set *caches,
+assay_status assay_cache_session_render(assay_cache_session *session, const assay_frame *frame,
+                                        const assay_cache_set             *caches,
                                         const assay_cached_image_settings *image,
                                         const assay_cached_light *light, assay_film *film,
                                         assay_ray_counts *counts)
 {
-    assay_bundle *saved  = NULL;
-    assay_status  status = session->cache_out
-                               ? assay_cache_file_create(frame, caches, session->cache_out, &saved)
-                               : ASSAY_OK;
-    status = status ? status : render_image(session, frame, caches, image, light, film, counts);
-    if (saved && status == ASSAY_OK) {
-        status = assay_cache_file_add(session->context, saved, caches);
-        status = status ? status : assay_bundle_finish(saved);
+    assay_status status = render_image(session, frame, caches, image, light, film, counts);
+    if (session->saved && frame->last && status == ASSAY_OK) {
+        status = assay_cache_file_finish(frame, caches, session->saved);
+        assay_bundle_destroy(session->saved);
+        session->saved = NULL;
     }
-    assay_bundle_destroy(saved);
     return status;
 }

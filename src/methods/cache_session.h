@@ -14,7 +14,7 @@
      "Folder of a saved cache to begin with, of the same scene and the same light.",              \
      ""},                                                                                         \
     {"cache_out", ASSAY_PARAM_PATH, "", "", 0, 0, NULL,                                           \
-     "Folder to make for the cache when the image is done.",                                      \
+     "Folder to make for the cache when the image, or the last of its frames, is done.",                                      \
      ""},                                                                                         \
     {"debug", ASSAY_PARAM_CHOICE, "", "off", 0, 0, "off|records|weights|error",                   \
      "A picture instead of the colour: records and their zones, weights, or the error of what "   \
@@ -29,9 +29,11 @@ typedef struct {
     assay_context         *context;
     char                  *cache_in, *cache_out, *reference; /* NULL: none                       */
     assay_cache_debug_kind debug_kind;
-    assay_cache_debug      debug;
-    assay_cache_point     *points; /* of a wave, by assay_cache_session_ask                      */
-    size_t                 capacity;
+    assay_cache_debug      debug; /* of this frame                                                */
+    assay_bundle          *saved; /* what becomes cache_out; NULL before the first frame and at the
+                                     end                                                          */
+    assay_cache_point *points;    /* of a wave, by assay_cache_session_ask                      */
+    size_t             capacity;
 } assay_cache_session;
 
 /* Reads the parameters.  Zeros are a session that may be released.  Errors: MEMORY. */
@@ -39,8 +41,9 @@ assay_status assay_cache_session_create(assay_context *context, const assay_para
                                         assay_cache_session *session);
 void         assay_cache_session_release(assay_cache_session *session);
 
-/* Before a frame: the reference is read, and saved records into the empty caches.  Errors: those of
- * assay_cache_debug_open and assay_cache_file_read. */
+/* Before a frame: the reference is read; into caches that are new (frame->frames_before is 0: the
+ * method made them, empty) the saved records; the counts of others begin again.  Errors: WRITE
+ * (cache_out), those of assay_cache_debug_open and assay_cache_file_read. */
 assay_status assay_cache_session_begin(assay_cache_session *session, const assay_frame *frame,
                                        const assay_cache_set *caches);
 
@@ -50,9 +53,9 @@ assay_status assay_cache_session_ask(assay_cache_session *session, size_t count,
                                      const assay_cached_point *points);
 
 /* The image by assay_cached_image_render, what it cost, and then the caches into the frame's dump
- * and into cache_out.  Errors: those of assay_cached_image_render; WRITE. */
-assay_status assay_cache_session_render(const assay_cache_session *session,
-                                        const assay_frame *frame, const assay_cache_set *caches,
+ * and after the last frame into cache_out.  Errors: those of assay_cached_image_render; WRITE. */
+assay_status assay_cache_session_render(assay_cache_session *session, const assay_frame *frame,
+                                        const assay_cache_set             *caches,
                                         const assay_cached_image_settings *image,
                                         const assay_cached_light *light, assay_film *film,
                                         assay_ray_counts *counts);

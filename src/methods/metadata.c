@@ -107,6 +107,11 @@ assay_status assay_metadata_add(assay_image *image, const assay_method *method,
     set_text(&d, "assay:seed", text);
     describe_scene(&d, frame->world->scene);
     describe_camera(&d, frame->camera);
+    if (method->keeps_light && frame->frames_before > 0) {
+        snprintf(text, sizeof text, "%llu", (unsigned long long)frame->frames_before);
+        set_text(&d, "assay:frames.before", text);
+        set_number(&d, "assay:frames.since", frame->since);
+    }
     for (const assay_param_desc *p = method->params; p->name; p++) {
         snprintf(text, sizeof text, "assay:%s.%s", method->name, p->name);
         set_text(&d, text, assay_params_text(params, p->name));

@@ -20,6 +20,12 @@ typedef struct {
     uint64_t            seed;
     assay_layer_set     layers;
     assay_bundle       *dump; /* where a method puts its stages, or NULL */
+    /* Frames before this one that the state rendered of this very world with this seed: what it
+     * knows of the light still holds, whatever the camera.  0: the world that it knew, if any, is
+     * gone, and nothing of it may be touched. */
+    uint64_t frames_before;
+    double   since; /* s: time of the first of them, or of this one                              */
+    bool     last;  /* the state is destroyed after this frame: what is to be saved is saved now  */
 } assay_frame;
 
 /* Points at which irradiance is asked. */
@@ -33,9 +39,11 @@ typedef struct {
     const char             *name;
     const char             *summary;
     const assay_param_desc *params;
+    bool keeps_light; /* an image depends on those before it, while nothing but the camera moves */
 
     assay_status (*create)(assay_context *context, const assay_params *params, void **state_out);
-    /* Once a frame, before render or probe; may keep state from frame to frame. */
+    /* Once a frame, before render or probe.  The scene is the same for all frames of a state, but
+     * not its time. */
     assay_status (*prepare)(void *state, const assay_frame *frame);
     assay_status (*render)(void *state, const assay_frame *frame, assay_film *film,
                            assay_ray_counts *counts);

@@ -106,7 +106,7 @@ assay_status assay_render_probes(assay_scene *scene, const char *method_name,
         status = assay_run_build(scene, &world, &stats);
     }
     if (status == ASSAY_OK) {
-        const assay_frame frame = {.context = context, .world = world, .seed = seed};
+        const assay_frame frame = {.context = context, .world = world, .seed = seed, .last = true};
         const double      start = assay_process_seconds();
         status               = assay_run_method(method, params, &frame, probe_work, &data, &counts);
         stats.seconds_render = assay_process_seconds() - start;

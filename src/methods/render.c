@@ -1,4 +1,7 @@
-/* render.c - one render from scene to image: world, method, film, metadata. */
+/* render.c - from a scene to images: world, method, film, metadata.
+ *
+ * Invariant: a method's state and the world that it was prepared with live together; where the
+ * world goes, the method is told before it is asked anything. */
 #include "assay/render.h"
 
 #include <stdio.h>
@@ -12,6 +15,7 @@
 #include "methods/dump.h"
 #include "methods/metadata.h"
 #include "methods/run.h"
+#include "scene/scene_moment.h"
 
 assay_render_options assay_render_options_default(void)
 {
@@ -80,23 +84,41 @@ static assay_status check_options(assay_context *context, const assay_render_opt
 
 /* ---- running ---- */
 
-static assay_status render_work(const assay_method *method, void *state, const assay_frame *frame,
-                                void *user, assay_ray_counts *counts)
+struct assay_sequence {
+    assay_scene        *scene;
+    const assay_method *method;
+    const assay_params *params;
+    void               *state; /* NULL before the first frame                  */
+    /* of the last frame */
+    assay_world *world;
+    char         moment[65];
+    uint64_t     seed;
+    /* of those that had the same world and seed */
+    uint64_t frames;
+    double   since; /* s */
+};
+
+static assay_status fill_film(assay_sequence *sequence, const assay_frame *frame, assay_film *film,
+                              assay_ray_counts *counts)
 {
-    return method->render(state, frame, user, counts);
+    const assay_method *method = sequence->method;
+    assay_status        status = sequence->state
+                                     ? ASSAY_OK
+                                     : method->create(frame->context, sequence->params, &sequence->state);
+    status                     = status ? status : method->prepare(sequence->state, frame);
+    return status ? status : method->render(sequence->state, frame, film, counts);
 }
 
-static assay_status make_image(const assay_method *method, const assay_params *params,
-                               const assay_frame *frame, assay_film *film, assay_image **image_out,
-                               assay_ray_counts *counts)
+static assay_status make_image(assay_sequence *sequence, const assay_frame *frame, assay_film *film,
+                               assay_image **image_out, assay_ray_counts *counts)
 {
     assay_image *image  = NULL;
-    assay_status status = assay_run_method(method, params, frame, render_work, film, counts);
+    assay_status status = fill_film(sequence, frame, film, counts);
     if (status == ASSAY_OK) {
         status = assay_film_develop(film, &image);
     }
     if (status == ASSAY_OK) {
-        status = assay_metadata_add(image, method, params, frame);
+        status = assay_metadata_add(image, sequence->method, sequence->params, frame);
     }
     if (status == ASSAY_OK && frame->dump) {
         status = assay_dump_image(frame->context, image, frame->dump);
@@ -112,9 +134,8 @@ static assay_status make_image(const assay_method *method, const assay_params *p
     return ASSAY_OK;
 }
 
-static assay_status render_frame(const assay_method *method, const assay_params *params,
-                                 assay_frame *frame, const char *dump, assay_image **image_out,
-                                 assay_render_stats *stats)
+static assay_status render_frame(assay_sequence *sequence, assay_frame *frame, const char *dump,
+                                 assay_image **image_out, assay_render_stats *stats)
 {
     assay_film      *film   = NULL;
     assay_ray_counts counts = {0};
@@ -125,7 +146,7 @@ static assay_status render_frame(const assay_method *method, const assay_params 
         status = assay_bundle_create(frame->context, dump, &frame->dump);
     }
     if (status == ASSAY_OK) {
-        status = make_image(method, params, frame, film, image_out, &counts);
+        status = make_image(sequence, frame, film, image_out, &counts);
     }
     if (status == ASSAY_OK) {
         stats->seconds_render = assay_process_seconds() - start;
@@ -136,42 +157,100 @@ static assay_status render_frame(const assay_method *method, const assay_params 
     return status;
 }
 
-assay_status assay_render(assay_scene *scene, const char *method_name, const assay_params *params,
-                          const assay_render_options *options, assay_image **image_out,
-                          assay_render_stats *stats_out)
+/* ---- sequences ---- */
+
+assay_status assay_sequence_create(assay_scene *scene, const char *method,
+                                   const assay_params *params, assay_sequence **sequence_out)
 {
-    assay_context             *context  = scene->context;
+    const assay_method *found  = NULL;
+    const assay_status  status = assay_run_find(scene->context, method, &found);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    assay_sequence *sequence = assay_allocate(scene->context, 1, sizeof *sequence);
+    if (!sequence) {
+        return assay_fail_memory(scene->context, "a sequence of frames");
+    }
+    *sequence     = (assay_sequence){.scene = scene, .method = found, .params = params};
+    *sequence_out = sequence;
+    return ASSAY_OK;
+}
+
+void assay_sequence_destroy(assay_sequence *sequence)
+{
+    if (sequence) {
+        sequence->method->destroy(sequence->state);
+        assay_world_destroy(sequence->world);
+        assay_release(sequence->scene->context, sequence);
+    }
+}
+
+/* The world of the scene's current time: the one there is where that looks the same. */
+static assay_status find_world(assay_sequence *sequence, assay_frame *frame,
+                               assay_render_stats *stats)
+{
+    char moment[65] = "";
+    if (sequence->world || !frame->last) {
+        assay_scene_moment(sequence->scene, moment);
+    }
+    const bool still = sequence->world && strcmp(moment, sequence->moment) == 0;
+    if (!still) {
+        assay_world_destroy(sequence->world);
+        sequence->world           = NULL;
+        const assay_status status = assay_run_build(sequence->scene, &sequence->world, stats);
+        if (status != ASSAY_OK) {
+            return status;
+        }
+    }
+    if (!still || frame->seed != sequence->seed) {
+        sequence->frames = 0;
+        sequence->since  = sequence->scene->time;
+    }
+    memcpy(sequence->moment, moment, sizeof moment);
+    sequence->seed       = frame->seed;
+    frame->world         = sequence->world;
+    frame->frames_before = sequence->frames++;
+    frame->since         = sequence->since;
+    return ASSAY_OK;
+}
+
+assay_status assay_sequence_render(assay_sequence *sequence, const assay_render_options *options,
+                                   bool last, assay_image **image_out,
+                                   assay_render_stats *stats_out)
+{
+    assay_context             *context  = sequence->scene->context;
     const assay_render_options defaults = assay_render_options_default();
-    const assay_method        *method   = NULL;
-    assay_world               *world    = NULL;
     assay_render_stats         stats    = {0};
+    assay_camera               camera   = {0};
     if (!options) {
         options = &defaults;
     }
-    assay_camera camera = {0};
     assay_frame  frame  = {.context = context,
                            .camera  = &camera,
                            .width   = options->width,
                            .height  = options->height,
-                           .seed    = options->seed};
-    assay_status status = assay_run_find(context, method_name, &method);
-    if (status == ASSAY_OK) {
-        status = check_options(context, options, &frame.layers);
-    }
+                           .seed    = options->seed,
+                           .last    = last};
+    assay_status status = check_options(context, options, &frame.layers);
     if (status == ASSAY_OK) {
         const double aspect = (double)options->width / (double)options->height;
-        status              = find_camera(scene, options->camera, aspect, &camera);
+        status              = find_camera(sequence->scene, options->camera, aspect, &camera);
     }
-    if (status == ASSAY_OK) {
-        status = assay_run_build(scene, &world, &stats);
-    }
-    if (status == ASSAY_OK) {
-        frame.world = world;
-        status      = render_frame(method, params, &frame, options->dump, image_out, &stats);
-    }
-    assay_world_destroy(world);
+    status = status ? status : find_world(sequence, &frame, &stats);
+    status = status ? status : render_frame(sequence, &frame, options->dump, image_out, &stats);
     if (status == ASSAY_OK && stats_out) {
         *stats_out = stats;
     }
+    return status;
+}
+
+assay_status assay_render(assay_scene *scene, const char *method, const assay_params *params,
+                          const assay_render_options *options, assay_image **image_out,
+                          assay_render_stats *stats_out)
+{
+    assay_sequence *sequence = NULL;
+    assay_status    status   = assay_sequence_create(scene, method, params, &sequence);
+    status = status ? status : assay_sequence_render(sequence, options, true, image_out, stats_out);
+    assay_sequence_destroy(sequence);
     return status;
 }

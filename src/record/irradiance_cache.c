@@ -499,3 +499,13 @@ void assay_irradiance_cache_count(const assay_irradiance_cache *cache, assay_ray
         }
     }
 }
+
+void assay_irradiance_cache_restart_counts(assay_irradiance_cache *cache)
+{
+    for (; cache; cache = cache->borrows_next ? NULL : cache->next) {
+        for (int i = 0; i < assay_context_threads(cache->context); i++) {
+            cache->worker_counts[i]    = (assay_ray_counts){0};
+            cache->workers[i].unserved = 0;
+        }
+    }
+}

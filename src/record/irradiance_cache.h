@@ -99,6 +99,9 @@ assay_record_store     *assay_irradiance_cache_store(assay_irradiance_cache *cac
 assay_irradiance_cache *assay_irradiance_cache_next(const assay_irradiance_cache *cache);
 /* Look-ups that no record reached, of this level. */
 uint64_t assay_irradiance_cache_unserved(const assay_irradiance_cache *cache);
+/* Rays and unserved look-ups are counted from 0 again, of all levels but those that belong to
+ * another cache. */
+void assay_irradiance_cache_restart_counts(assay_irradiance_cache *cache);
 /* Adds the rays traced so far and the records there are, of all levels but
  * those that belong to another cache. */
 void assay_irradiance_cache_count(const assay_irradiance_cache *cache, assay_ray_counts *counts);

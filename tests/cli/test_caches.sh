@@ -42,6 +42,23 @@ good_caches() { # METHOD SCENE SETTINGS ARRAY: the files are named after the met
 }
 good_caches irradiance-cache $box "$few" records/irradiance
 good_caches radiance-cache $shiny "$glossy" radiance_records/coefficient_gradient
+# ---- frames ----
+run render $box $few -o "$folder/frame-#.exr" --frames 0:1 --cache-out "$folder/frames"
+went_well && "$assay" diff "$folder/irradiance-cache-made.exr" "$folder/frame-0.exr" > /dev/null &&
+    "$assay" diff "$folder/irradiance-cache-loaded.exr" "$folder/frame-1.exr" > /dev/null &&
+    [ -f "$folder/frames/manifest.json" ]
+result $? "a frame begins with the records of the one before"
+moving="scenes/animated/animated.gltf $few --size 8x8"
+run render $moving -o "$folder/moving-#.exr" --frames 0:1 --fps 1
+went_well && "$assay" render $moving -o "$folder/alone.exr" --time 1 &&
+    "$assay" diff "$folder/moving-1.exr" "$folder/alone.exr" > /dev/null
+result $? "and with none where things move"
+"$assay" render $moving -o "$folder/a.exr" --cache-out "$folder/moved"
+refuses "a cache of another time, where things move" 2 "scene.moment" render $moving \
+    -o "$out/a.exr" --time 1 --cache-in "$folder/moved"
+accepts "where nothing moves, times are the same" render $box $few -o "$folder/a.exr" --time 1 \
+    --cache-in "$folder/irradiance-cache"
+
 cache=$folder/irradiance-cache
 lights=$folder/radiance-cache
 
@@ -78,11 +95,46 @@ refuses "a reference that is no image" 2 "manifest" render $box $few -o "$out/a.
 refuses "r_min above r_max" 2 "r_min" render $box $few -o "$out/a.exr" --r-min 2 --r-max 1
 refuses "r_min_pixels above r_max_pixels" 2 "r_min_pixels" render $box $few -o "$out/a.exr" \
     --r-min-pixels 2 --r-max-pixels 1
-for bad in "--a 0" "--a -1" "--a nan" "--theta-strata 1" "--phi-strata 1" "--theta-strata 5000" \
-    "--levels 0" "--levels 9" "--max-records 0" "--passes 3" "--secondary all"; do
-    set -- $bad
-    refuses "$bad" 2 "$(echo "${1#--}" | tr - _)" render $box $few -o "$out/a.exr" $bad
+bad_values() { # SETTINGS OPTION VALUE...: refused by the parameter's name
+    settings=$1 option=$2
+    shift 2
+    for value; do
+        refuses "$option $value" 2 "$(echo "${option#--}" | tr - _)" render $box $settings \
+            -o "$out/a.exr" $option "$value"
+    done
+}
+for settings in "$few" "$glossy"; do
+    bad_values "$settings" --a 0 -1 nan inf 1e999 1001 x ""
+    bad_values "$settings" --theta-strata 1 0 -3 5000 inf nan 4.5
+    bad_values "$settings" --phi-strata 1 nan
+    bad_values "$settings" --r-min nan inf -1
+    bad_values "$settings" --r-max nan inf -0.1
+    bad_values "$settings" --r-min-pixels nan inf
+    bad_values "$settings" --bounces -1 nan -inf
 done
+bad_values "$few" --levels 0 9 inf
+bad_values "$few" --max-records 0 inf
+bad_values "$few" --passes 0 3
+bad_values "$few" --secondary all
+bad_values "$glossy" --order 0 21 -1 inf nan
+bad_values "$glossy" --sh-order 0 nan inf
+bad_values "$glossy" --rotation-steps 0 nan
+bad_values "$glossy" --glossy-accuracy -0.1 1.1 nan inf
+bad_values "$glossy" --grid 1 513
+bad_values "$glossy" --nodes 7 nan
+bad_values "$glossy" --rotation slerp
+refuses "an order of irradiance-cache" 2 "order" render $box $few -o "$out/a.exr" --order 4
+refuses "a rotation that has no angle" 2 "90 degrees" render $shiny $glossy -o "$out/a.exr" --a 1.2 \
+    --rotation digon
+
+# ---- scenes of which a cache can make nothing ----
+accepts "nothing gives light" render scenes/lobes/lobes.gltf $glossy -o "$folder/a.exr"
+run render scenes/lobes/lobes.gltf $few -o "$folder/a.exr"
+[ $code -eq 0 ] && grep -q 'nothing in the scene emits light' "$folder/stderr"
+result $? "and that is said"
+printf '{"asset":{"version":"2.0"}}' > "$folder/nothing.gltf"
+accepts "nothing is there" render "$folder/nothing.gltf" -q $few -o "$folder/a.exr"
+accepts "nothing is there, with harmonics" render "$folder/nothing.gltf" $glossy -o "$folder/a.exr"
 
 # ---- spoiled caches ----
 edited() { # FILE COMMAND: the command writes x, which becomes the file, with its digest put right

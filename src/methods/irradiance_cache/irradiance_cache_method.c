@@ -54,10 +54,14 @@ static assay_cache_set caches_of(const cache_state *s)
 
 static assay_status prepare(void *state, const assay_frame *frame)
 {
-    cache_state *s = state;
-    s->world       = frame->world;
-    assay_status status =
-        assay_irradiance_cache_create(frame->world, &s->settings, frame->seed, &s->cache);
+    cache_state *s      = state;
+    assay_status status = ASSAY_OK;
+    if (frame->frames_before == 0) {
+        assay_irradiance_cache_destroy(s->cache);
+        s->cache = NULL;
+        status = assay_irradiance_cache_create(frame->world, &s->settings, frame->seed, &s->cache);
+    }
+    s->world                     = frame->world;
     const assay_cache_set caches = caches_of(s);
     return status ? status : assay_cache_session_begin(&s->session, frame, &caches);
 }
@@ -149,8 +153,9 @@ const assay_method assay_method_irradiance_cache = {
     .summary = "Irradiance caching: indirect diffuse light interpolated from records by octree and "
                "gradients.",
     .params  = PARAMS,
-    .create  = create,
-    .prepare = prepare,
-    .render  = render,
-    .destroy = destroy,
+    .keeps_light = true,
+    .create      = create,
+    .prepare     = prepare,
+    .render      = render,
+    .destroy     = destroy,
 };

@@ -57,14 +57,21 @@ static void release_desks(cache_state *s)
     assay_release(s->context, s->desks);
 }
 
+static void drop_caches(cache_state *s)
+{
+    assay_radiance_cache_destroy(s->radiance);
+    assay_irradiance_cache_destroy(s->irradiance);
+    s->radiance   = NULL;
+    s->irradiance = NULL;
+}
+
 static void destroy(void *state)
 {
     cache_state *s = state;
     if (s) {
         release_desks(s);
         glossy_materials_release(&s->materials);
-        assay_radiance_cache_destroy(s->radiance);
-        assay_irradiance_cache_destroy(s->irradiance);
+        drop_caches(s);
         assay_cache_session_release(&s->session);
         assay_release(s->context, s->limits);
         assay_release(s->context, s->made);
@@ -122,16 +129,22 @@ static assay_status make_caches(cache_state *s, const assay_frame *frame)
         return status;
     }
     status = assay_radiance_cache_create(s->context, s->irradiance, &s->settings, &s->radiance);
-    return status ? status : make_desks(s);
+    return status || s->desks ? status : make_desks(s);
 }
 
+/* Materials are the same for all frames. */
 static assay_status prepare(void *state, const assay_frame *frame)
 {
-    cache_state *s = state;
-    s->world       = frame->world;
-    assay_status status =
-        assay_radiance_params_materials(s->context, frame->world->scene, &s->params, &s->materials);
-    status                       = status ? status : make_caches(s, frame);
+    cache_state *s               = state;
+    s->world                     = frame->world;
+    assay_status          status = s->materials.grids
+                                       ? ASSAY_OK
+                                       : assay_radiance_params_materials(s->context, frame->world->scene,
+                                                                         &s->params, &s->materials);
+    if (status == ASSAY_OK && frame->frames_before == 0) {
+        drop_caches(s);
+        status = make_caches(s, frame);
+    }
     const assay_cache_set caches = caches_of(s);
     return status ? status : assay_cache_session_begin(&s->session, frame, &caches);
 }
@@ -352,8 +365,9 @@ const assay_method assay_method_radiance_cache = {
     .summary = "Radiance caching: as irradiance-cache, and indirect light on glossy surfaces from "
                "records in hemispherical harmonics.",
     .params  = PARAMS,
-    .create  = create,
-    .prepare = prepare,
-    .render  = render,
-    .destroy = destroy,
+    .keeps_light = true,
+    .create      = create,
+    .prepare     = prepare,
+    .render      = render,
+    .destroy     = destroy,
 };

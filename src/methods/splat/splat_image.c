@@ -31,6 +31,10 @@ static assay_status open_glossy(splat_image *image)
 
 assay_status splat_image_open(splat_image *image)
 {
+    image->count           = 0;
+    image->begun           = false;
+    image->dumped          = false;
+    image->lost            = 0;
     assay_context *context = image->context;
     const size_t   pixels  = pixels_of(image);
     assay_status   status  = splat_layer_open(context, image->frame->width, image->frame->height,

@@ -49,13 +49,20 @@ typedef struct {
     assay_radiance_cache         *radiance; /* NULL: no material is within reach */
 } splat_state;
 
+static void drop_caches(splat_state *s)
+{
+    assay_radiance_cache_destroy(s->radiance);
+    assay_irradiance_cache_destroy(s->irradiance);
+    s->radiance   = NULL;
+    s->irradiance = NULL;
+}
+
 static void destroy(void *state)
 {
     splat_state *s = state;
     if (s) {
         splat_image_close(&s->image);
-        assay_radiance_cache_destroy(s->radiance);
-        assay_irradiance_cache_destroy(s->irradiance);
+        drop_caches(s);
         glossy_materials_release(&s->materials);
         assay_cache_session_release(&s->session);
         assay_release(s->context, s);
@@ -110,21 +117,25 @@ static assay_cache_set caches_of(const splat_state *s)
 
 static assay_status make_caches(splat_state *s, const assay_frame *frame)
 {
-    assay_status status =
-        assay_radiance_params_materials(s->context, frame->world->scene, &s->params, &s->materials);
-    status = status ? status
-                    : assay_irradiance_cache_create(frame->world, &s->settings.records, frame->seed,
-                                                    &s->irradiance);
-    if (status != ASSAY_OK || !s->materials.any) {
-        return status;
-    }
-    return assay_radiance_cache_create(s->context, s->irradiance, &s->settings, &s->radiance);
+    const assay_status status = assay_irradiance_cache_create(frame->world, &s->settings.records,
+                                                              frame->seed, &s->irradiance);
+    return status || !s->materials.any
+               ? status
+               : assay_radiance_cache_create(s->context, s->irradiance, &s->settings, &s->radiance);
 }
 
+/* Materials are the same for all frames. */
 static assay_status prepare(void *state, const assay_frame *frame)
 {
-    splat_state          *s      = state;
-    const assay_status    status = make_caches(s, frame);
+    splat_state *s      = state;
+    assay_status status = s->materials.grids
+                              ? ASSAY_OK
+                              : assay_radiance_params_materials(s->context, frame->world->scene,
+                                                                &s->params, &s->materials);
+    if (status == ASSAY_OK && frame->frames_before == 0) {
+        drop_caches(s);
+        status = make_caches(s, frame);
+    }
     const assay_cache_set caches = caches_of(s);
     return status ? status : assay_cache_session_begin(&s->session, frame, &caches);
 }
@@ -180,8 +191,9 @@ const assay_method assay_method_splat = {
     .summary = "Radiance cache splatting: irradiance and radiance records spread over the pixels "
                "that they reach.",
     .params  = PARAMS,
-    .create  = create,
-    .prepare = prepare,
-    .render  = render,
-    .destroy = destroy,
+    .keeps_light = true,
+    .create      = create,
+    .prepare     = prepare,
+    .render      = render,
+    .destroy     = destroy,
 };
