@@ -184,6 +184,55 @@ static void agrees_with_path(void **state)
     close_studio(&s);
 }
 
+/* ---- figure 4.2 ---- */
+
+/* Rms step of the indirect irradiance between neighbours on one plane, in parts of its mean. */
+static double steps(const rendered *made, int size)
+{
+    assay_channel e, nx, ny;
+    double        squares = 0.0, sum = 0.0;
+    int           pairs = 0;
+    assert_true(assay_image_find_channel(made->image, "IrradianceIndirect.G", &e) &&
+                assay_image_find_channel(made->image, "N.X", &nx) &&
+                assay_image_find_channel(made->image, "N.Y", &ny));
+    for (int i = 0; i < size * (size - 1); i++) {
+        const int below = i + size, right = i % size + 1 < size ? i + 1 : i;
+        for (int k = 0; k < 2; k++) {
+            const int    other = k ? below : right;
+            const double d     = (double)e.data.f32[i] - e.data.f32[other];
+            const bool   same =
+                nx.data.f32[i] == nx.data.f32[other] && ny.data.f32[i] == ny.data.f32[other];
+            squares += same ? d * d : 0.0;
+            pairs += same;
+        }
+        sum += e.data.f32[i];
+    }
+    return sqrt(squares / pairs) * size * (size - 1) / sum;
+}
+
+/* One pass of the octree leaves seams; splatting in one pass is as smooth as the octree in two. */
+static void no_seams(void **state)
+{
+    (void)state;
+    const setting coarse[] = {{"a", "0.4"}, {"gradients", "none"}, {"size", "64"}, {NULL, NULL}};
+    const setting once[]   = {
+          {"a", "0.4"}, {"gradients", "none"}, {"size", "64"}, {"passes", "1"}, {NULL, NULL}};
+    studio s;
+    open_studio(&s, NULL);
+    rendered     one      = rendered_make(&s.r, s.scene, IRRADIANCE, once);
+    rendered     two      = rendered_make(&s.r, s.scene, IRRADIANCE, coarse);
+    rendered     splat    = rendered_make(&s.r, s.scene, SPLAT, coarse);
+    const double seams[3] = {steps(&one, 64), steps(&two, 64), steps(&splat, 64)};
+    print_message("#| steps between neighbours: one pass %.4f, two %.4f, splatting %.4f\n",
+                  seams[0], seams[1], seams[2]);
+    assert_true(seams[0] > 1.2 * seams[2]);
+    assert_true(fabs(seams[2] - seams[1]) <= 1e-6 * seams[1]);
+    rendered_drop(&one);
+    rendered_drop(&two);
+    rendered_drop(&splat);
+    close_studio(&s);
+}
+
 /* ---- variants ---- */
 
 /* With an empty cache both steps 5 are the same; with old records the published one is wrong, and
@@ -360,6 +409,7 @@ int main(void)
         cmocka_unit_test(same_as_irradiance_cache),
         cmocka_unit_test(same_as_radiance_cache),
         cmocka_unit_test(agrees_with_path),
+        cmocka_unit_test(no_seams),
         cmocka_unit_test(step_5),
         cmocka_unit_test(another_accuracy),
         cmocka_unit_test(published_bounds),
