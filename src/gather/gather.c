@@ -14,6 +14,8 @@ typedef struct {
     const assay_gather_site *site;
     uint64_t                 item;
     assay_hemisphere        *hemisphere;
+    assay_gather_hit        *hits; /* of the cells from first on; NULL: none are kept */
+    int                      first, end;
 } gather_job;
 
 assay_gather_site assay_gather_site_of(const assay_vertex *vertex)
@@ -26,62 +28,96 @@ assay_gather_site assay_gather_site_of(const assay_vertex *vertex)
     };
 }
 
-static bool look(const gather_job *job, int index, int worker)
+static void trace(const gather_job *job, int index, int worker, assay_gather_hit *hit_out)
 {
     const assay_gatherer          *g      = job->gatherer;
     const assay_gather_site       *site   = job->site;
     const assay_hemisphere_layout *layout = &job->hemisphere->layout;
     assay_cell                    *cell   = &job->hemisphere->cells[index];
-    assay_ray_counts              *counts = &g->worker_counts[worker];
-    assay_random                   random =
-        assay_random_start(g->seed, ASSAY_STAGE_GATHER, job->item, (uint64_t)index);
+    assay_random                  *random = &hit_out->random;
+    *random      = assay_random_start(g->seed, ASSAY_STAGE_GATHER, job->item, (uint64_t)index);
+    hit_out->hit = false;
     double u1 = 0.5, u2 = 0.5;
     if (layout->jitter) {
-        u1 = assay_random_next(&random);
-        u2 = assay_random_next(&random);
+        u1 = assay_random_next(random);
+        u2 = assay_random_next(random);
     }
     *cell                      = (assay_cell){.distance  = INFINITY,
                                               .direction = assay_hemisphere_direction(layout, index / layout->phi,
                                                                                       index % layout->phi, u1, u2)};
     const assay_vec3 direction = frame3_to_world(&site->frame, cell->direction);
     if (!(vec3_dot(direction, site->ng) > 0.0)) {
-        return true;
+        return;
     }
     assay_hit hit;
     if (!assay_world_closest(g->world,
                              assay_world_offset(g->world, site->position, site->ng, direction),
-                             direction, false, &random, &counts->scatter, &hit)) {
-        return true;
+                             direction, false, random, &g->worker_counts[worker].scatter, &hit)) {
+        return;
     }
-    assay_vertex vertex;
-    assay_vertex_place(g->world, &hit, direction, &vertex);
+    assay_vertex *vertex = &hit_out->vertex;
+    assay_vertex_place(g->world, &hit, direction, vertex);
+    hit_out->hit     = true;
     cell->distance   = hit.t;
-    cell->hit_normal = frame3_to_local(&site->frame, vertex.front ? vertex.surface.ng
-                                                                  : vec3_negate(vertex.surface.ng));
-    cell->radiance   = g->radiance(g->user, index, &vertex, &random, worker);
+    cell->hit_normal = frame3_to_local(
+        &site->frame, vertex->front ? vertex->surface.ng : vec3_negate(vertex->surface.ng));
+}
+
+static bool light(const gather_job *job, int index, int worker, assay_gather_hit *hit)
+{
+    const assay_gatherer *g    = job->gatherer;
+    assay_cell           *cell = &job->hemisphere->cells[index];
+    if (hit->hit) {
+        cell->radiance = g->radiance(g->user, index, &hit->vertex, &hit->random, worker);
+    }
     return rgb_finite(cell->radiance);
 }
 
-static assay_status look_at_chunk(void *user, uint64_t chunk, int worker)
+static assay_status serve(void *user, uint64_t chunk, int worker)
 {
     const gather_job *job   = user;
-    const int         cells = job->hemisphere->layout.theta * job->hemisphere->layout.phi;
-    const int         first = (int)chunk * CHUNK;
-    for (int i = first; i < first + CHUNK && i < cells; i++) {
-        if (!look(job, i, worker)) {
+    const int         first = job->first + (int)chunk * CHUNK;
+    for (int i = first; i < first + CHUNK && i < job->end; i++) {
+        assay_gather_hit  own;
+        assay_gather_hit *hit = job->hits ? &job->hits[i - job->first] : &own;
+        if (job->site) {
+            trace(job, i, worker, hit);
+        }
+        if ((!job->site || !job->hits) && !light(job, i, worker, hit)) {
             return ASSAY_ERR_DOMAIN;
         }
     }
     return ASSAY_OK;
 }
 
+/* Rays where there is a site to send them from, light unless their hits are kept for later. */
+static assay_status run(gather_job *job)
+{
+    const uint64_t     chunks = ((uint64_t)(job->end - job->first) + CHUNK - 1) / CHUNK;
+    const assay_world *world  = job->gatherer->world;
+    const assay_status status = assay_parallel_for(world->scene->context, NULL, chunks, serve, job);
+    return status == ASSAY_ERR_DOMAIN ? assay_world_fail_light(world) : status;
+}
+
 assay_status assay_gather(const assay_gatherer *gatherer, const assay_gather_site *site,
                           uint64_t item, assay_hemisphere *hemisphere)
 {
-    const uint64_t cells   = (uint64_t)hemisphere->layout.theta * (uint64_t)hemisphere->layout.phi;
-    gather_job     job     = {gatherer, site, item, hemisphere};
-    assay_context *context = gatherer->world->scene->context;
-    const assay_status status =
-        assay_parallel_for(context, NULL, (cells + CHUNK - 1) / CHUNK, look_at_chunk, &job);
-    return status == ASSAY_ERR_DOMAIN ? assay_world_fail_light(gatherer->world) : status;
+    const int  cells = hemisphere->layout.theta * hemisphere->layout.phi;
+    gather_job job   = {gatherer, site, item, hemisphere, NULL, 0, cells};
+    return run(&job);
+}
+
+assay_status assay_gather_rays(const assay_gatherer *gatherer, const assay_gather_site *site,
+                               uint64_t item, int first, int count, assay_hemisphere *hemisphere,
+                               assay_gather_hit *hits_out)
+{
+    gather_job job = {gatherer, site, item, hemisphere, hits_out, first, first + count};
+    return run(&job);
+}
+
+assay_status assay_gather_light(const assay_gatherer *gatherer, int first, int count,
+                                assay_gather_hit *hits, assay_hemisphere *hemisphere)
+{
+    gather_job job = {gatherer, NULL, 0, hemisphere, hits, first, first + count};
+    return run(&job);
 }

@@ -37,4 +37,20 @@ typedef struct {
 assay_status assay_gather(const assay_gatherer *gatherer, const assay_gather_site *site,
                           uint64_t item, assay_hemisphere *hemisphere);
 
+/* What the ray of a cell met. */
+typedef struct {
+    bool         hit;
+    assay_vertex vertex; /* where hit */
+    assay_random random; /* as the radiance goes on with it */
+} assay_gather_hit;
+
+/* The same in two steps, for who wants to know all that is seen before any light is asked: rays,
+ * with the light still 0, ... */
+assay_status assay_gather_rays(const assay_gatherer *gatherer, const assay_gather_site *site,
+                               uint64_t item, int first, int count, assay_hemisphere *hemisphere,
+                               assay_gather_hit *hits_out);
+/* ... and the light of these cells.  Errors as assay_gather. */
+assay_status assay_gather_light(const assay_gatherer *gatherer, int first, int count,
+                                assay_gather_hit *hits, assay_hemisphere *hemisphere);
+
 #endif

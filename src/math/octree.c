@@ -30,6 +30,7 @@ static const uint32_t NONE = ASSAY_OCTREE_END;
 typedef struct {
     uint32_t child[8]; /* 0: none; bit 0 of the index is x, 1 y, 2 z */
     uint32_t block;    /* the first of its blocks, or NONE; the others are full */
+    uint32_t children; /* which there are: a bit each */
 } tree_node;
 
 enum { SLOTS = 8 };
@@ -37,7 +38,7 @@ enum { SLOTS = 8 };
 /* Items of a node; slots from count on are 0. */
 typedef struct {
     double   x[SLOTS], y[SLOTS], z[SLOTS];
-    double   reach[SLOTS]; /* squared */
+    double   reach[SLOTS];
     uint32_t number[SLOTS];
     uint32_t count, node, next;
 } tree_block;
@@ -148,6 +149,7 @@ static uint32_t home(assay_octree *octree, assay_vec3 place, double reach)
             next                             = (uint32_t)octree->node_count++;
             octree->nodes[next]              = (tree_node){.block = NONE};
             octree->nodes[node].child[child] = next;
+            octree->nodes[node].children |= 1U << child;
         }
         node = next;
         side *= 0.5;
@@ -194,7 +196,7 @@ static void put_item(assay_octree *octree, uint32_t node, uint32_t number, assay
     block->x[slot]       = place.x;
     block->y[slot]       = place.y;
     block->z[slot]       = place.z;
-    block->reach[slot]   = reach * reach;
+    block->reach[slot]   = reach;
     block->number[slot]  = number;
 
     octree->slots[number] = octree->nodes[node].block * SLOTS + slot;
@@ -248,7 +250,7 @@ void assay_octree_shrink(assay_octree *octree, uint32_t number, double reach)
     tree_block      *block = &octree->blocks[octree->slots[number] / SLOTS];
     const assay_vec3 place = vec3(block->x[slot], block->y[slot], block->z[slot]);
     const uint32_t   node  = room ? home(octree, place, reach) : block->node;
-    block->reach[slot]     = reach * reach;
+    block->reach[slot]     = reach;
     if (node != block->node) {
         take_item(octree, number);
         put_item(octree, node, number, place, reach);
@@ -278,7 +280,16 @@ void assay_octree_walk_about(assay_octree_walk *walk, const assay_octree *octree
     start(walk, octree, point);
     walk->margin  = SLACK;
     walk->growth  = 0.5;
+    walk->more    = 0.0;
     walk->squared = -1.0;
+}
+
+void assay_octree_walk_around(assay_octree_walk *walk, const assay_octree *octree, assay_vec3 point,
+                              double more)
+{
+    assay_octree_walk_about(walk, octree, point);
+    walk->more = more;
+    walk->margin += more * octree->inverse * (1.0 + SLACK);
 }
 
 void assay_octree_walk_near(assay_octree_walk *walk, const assay_octree *octree, assay_vec3 point,
@@ -287,6 +298,7 @@ void assay_octree_walk_near(assay_octree_walk *walk, const assay_octree *octree,
     start(walk, octree, point);
     walk->margin  = distance * octree->inverse * (1.0 + SLACK) + SLACK;
     walk->growth  = 0.0;
+    walk->more    = 0.0;
     walk->squared = distance * distance;
 }
 
@@ -295,30 +307,34 @@ void assay_octree_walk_near(assay_octree_walk *walk, const assay_octree *octree,
 static unsigned halves(double at, double low, double half, double margin)
 {
     const double middle = low + half;
-    return (unsigned)(at >= low - margin && at <= middle + margin) |
-           (unsigned)(at >= middle - margin && at <= middle + half + margin) << 1;
+    return (unsigned)((at >= low - margin) & (at <= middle + margin)) |
+           (unsigned)((at >= middle - margin) & (at <= middle + half + margin)) << 1;
 }
+
+static unsigned lowest_bit(unsigned bits) { return (unsigned)__builtin_ctz(bits); }
 
 /* Puts the children of a node whose grown cubes hold the point on the stack. */
 static void descend(assay_octree_walk *walk, const tree_node *node, const double low[3],
                     double side)
 {
-    const double   half   = 0.5 * side;
-    const double   margin = walk->margin + walk->growth * half;
-    const unsigned x      = halves(walk->unit[0], low[0], half, margin);
-    const unsigned y      = halves(walk->unit[1], low[1], half, margin);
-    const unsigned z      = halves(walk->unit[2], low[2], half, margin);
-    for (unsigned i = 0; i < 8; i++) {
-        const unsigned inside = x >> (i & 1U) & y >> (i >> 1 & 1U) & z >> (i >> 2) & 1U;
-        if (inside && node->child[i]) {
-            const int top = walk->waiting++;
+    /* The children in the lower half, the upper half, or both. */
+    static const uint8_t along_x[4] = {0, 0x55, 0xaa, 0xff}, along_y[4] = {0, 0x33, 0xcc, 0xff},
+                         along_z[4] = {0, 0x0f, 0xf0, 0xff};
 
-            walk->stack[top].low[0] = i & 1U ? low[0] + half : low[0];
-            walk->stack[top].low[1] = i & 2U ? low[1] + half : low[1];
-            walk->stack[top].low[2] = i & 4U ? low[2] + half : low[2];
-            walk->stack[top].side   = half;
-            walk->stack[top].node   = node->child[i];
-        }
+    const double half   = 0.5 * side;
+    const double margin = walk->margin + walk->growth * half;
+    unsigned     inside = node->children & along_x[halves(walk->unit[0], low[0], half, margin)] &
+                      along_y[halves(walk->unit[1], low[1], half, margin)] &
+                      along_z[halves(walk->unit[2], low[2], half, margin)];
+    for (; inside; inside &= inside - 1) {
+        const unsigned i   = lowest_bit(inside);
+        const int      top = walk->waiting++;
+
+        walk->stack[top].low[0] = i & 1U ? low[0] + half : low[0];
+        walk->stack[top].low[1] = i & 2U ? low[1] + half : low[1];
+        walk->stack[top].low[2] = i & 4U ? low[2] + half : low[2];
+        walk->stack[top].side   = half;
+        walk->stack[top].node   = node->child[i];
     }
 }
 
@@ -333,7 +349,8 @@ static unsigned match(const assay_octree_walk *walk, const tree_block *block)
     }
     unsigned matches = 0;
     for (unsigned i = 0; i < block->count; i++) {
-        const double limit = walk->squared < 0.0 ? block->reach[i] : walk->squared;
+        const double reach = block->reach[i] + walk->more;
+        const double limit = walk->squared < 0.0 ? reach * reach : walk->squared;
         matches |= (unsigned)(squared[i] <= limit) << i;
     }
     return matches;
@@ -365,10 +382,7 @@ uint32_t assay_octree_walk_next(assay_octree_walk *walk)
             return ASSAY_OCTREE_END;
         }
     }
-    unsigned slot = 0;
-    while (!(walk->matches >> slot & 1U)) {
-        slot++;
-    }
+    const unsigned slot = lowest_bit(walk->matches);
     walk->matches &= walk->matches - 1;
     return walk->octree->blocks[walk->block].number[slot];
 }

@@ -41,6 +41,7 @@ typedef struct {
     double              unit[3]; /* the point in the root's cube    */
     double              margin;  /* a cube counts within this and   */
     double              growth;  /* this times its side             */
+    double              more;    /* what is added to reaches, m     */
     double              squared; /* of the distance; < 0: the reach */
     uint32_t            block, next_block;
     unsigned            matches; /* of the block, a bit an item */
@@ -55,6 +56,10 @@ typedef struct {
 /* Over the items whose reach holds the point: d . d <= reach * reach as rounded, d = point - place.
  * None where a coordinate is NaN. */
 void assay_octree_walk_about(assay_octree_walk *walk, const assay_octree *octree, assay_vec3 point);
+/* The same for reaches that are all longer by `more`, m, >= 0: what walks about any point within
+ * that distance would meet is among it, but for the rounding. */
+void assay_octree_walk_around(assay_octree_walk *walk, const assay_octree *octree, assay_vec3 point,
+                              double more);
 /* Over the items whose place is within the distance of the point, whatever their reach:
  * d . d <= distance * distance as rounded; distance >= 0. */
 void assay_octree_walk_near(assay_octree_walk *walk, const assay_octree *octree, assay_vec3 point,

@@ -70,6 +70,7 @@ assay_status assay_cache_params_read(assay_context *context, const assay_params 
         .r_max           = limit(params, "r_max"),
         .r_min_pixels    = assay_params_real(params, "r_min_pixels"),
         .r_max_pixels    = limit(params, "r_max_pixels"),
+        .gradient_limit  = assay_params_bool(params, "gradient_limit"),
         .neighbour_clamp = assay_params_bool(params, "neighbour_clamp"),
         .normal_gradient = assay_params_bool(params, "normal_gradient"),
         .max_records     = (uint32_t)assay_params_int(params, "max_records"),

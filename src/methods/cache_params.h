@@ -7,7 +7,6 @@
 
 /* Rows of a parameter table, read by assay_cache_params_read. */
 /* clang-format off */
-/* clang-format off */
 #define ASSAY_CACHE_PARAMS                                                                        \
     {"spp", ASSAY_PARAM_INT, "samples", "64", 1, 1e9, NULL,                                       \
      "Camera samples a pixel, and samples of its direct irradiance.",                             \
@@ -69,6 +68,10 @@
     {"r_max_pixels", ASSAY_PARAM_REAL, "pixels", "0", 0, 1e6, NULL,                               \
      "R is no larger than so many pixels at the record; 0: no limit.",                            \
      "[tabellion04]"},                                                                            \
+    {"gradient_limit", ASSAY_PARAM_BOOL, "", "off", 0, 0, NULL,                                   \
+     "R is no larger than irradiance / |translational gradient|, nor that gradient than "          \
+     "irradiance / R.",                                                                           \
+     "[krivanek05]"},                                                                             \
     {"in_front", ASSAY_PARAM_BOOL, "", "off", 0, 0, NULL,                                         \
      "Records in front of the point are left out.",                                               \
      "[ward88]"},                                                                                 \

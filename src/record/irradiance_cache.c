@@ -23,7 +23,8 @@ static const int BESIDE      = 64; /* added to the level of a cache beside anoth
 typedef struct {
     assay_contributions found;
     uint64_t            unserved;
-    bool                refused; /* memory, inside a gathering */
+    uint32_t            last_reaching; /* record: a hint */
+    bool                refused;       /* memory, inside a gathering */
     char                apart[64];
 } cache_worker;
 
@@ -42,7 +43,8 @@ struct assay_irradiance_cache {
     assay_irradiance_cache         *next;
     bool                            borrows_next; /* it belongs to another cache     */
     assay_record_companion          companion;    /* keep NULL: none                 */
-    assay_cache_point              *seen;         /* what the cells see                      */
+    assay_gather_hit               *hits;         /* WAVE: what cells see, and ...  */
+    assay_cache_point              *seen;         /* ... ask; NULL but with secondary CACHE  */
 };
 
 static bool allocate(assay_irradiance_cache *cache)
@@ -54,7 +56,16 @@ static bool allocate(assay_irradiance_cache *cache)
     for (size_t i = 0; cache->workers && i < threads; i++) {
         cache->workers[i].found.context = cache->context;
     }
-    return cache->worker_counts && cache->workers && cache->covered;
+    if (cache->settings.secondary == ASSAY_SECONDARY_CACHE) {
+        const size_t cells =
+            (size_t)cache->settings.layout.theta * (size_t)cache->settings.layout.phi;
+        const size_t block = cells < WAVE ? cells : WAVE;
+        cache->hits        = assay_allocate(cache->context, block, sizeof *cache->hits);
+        cache->seen        = assay_allocate(cache->context, block, sizeof *cache->seen);
+    }
+    const bool has_seen =
+        cache->settings.secondary != ASSAY_SECONDARY_CACHE || (cache->hits && cache->seen);
+    return cache->worker_counts && cache->workers && cache->covered && has_seen;
 }
 
 static void destroy(assay_irradiance_cache *cache)
@@ -68,6 +79,7 @@ static void destroy(assay_irradiance_cache *cache)
     assay_release(cache->context, cache->worker_counts);
     assay_release(cache->context, cache->workers);
     assay_release(cache->context, cache->covered);
+    assay_release(cache->context, cache->hits);
     assay_release(cache->context, cache->seen);
     assay_release(cache->context, cache);
 }
@@ -92,24 +104,21 @@ static assay_irradiance_cache *create_level(const assay_world                   
         *status_out = assay_fail_memory(scene->context, "the irradiance cache");
         return NULL;
     }
-    cache->world        = world;
-    cache->context      = scene->context;
-    cache->settings     = *settings;
-    cache->seed         = seed;
-    cache->level        = level;
-    cache->diagonal     = vec3_length(vec3_sub(scene->bounds_max, scene->bounds_min));
-    const size_t cells  = (size_t)settings->layout.theta * (size_t)settings->layout.phi;
-    cache->seen         = assay_allocate(cache->context, cells, sizeof *cache->seen);
-    assay_status status = allocate(cache) && cache->seen
-                              ? ASSAY_OK
-                              : assay_fail_memory(cache->context, "the irradiance cache");
-    status              = status
-                              ? status
-                              : assay_record_store_create(cache->context, &settings->rules, scene->bounds_min,
-                                                          scene->bounds_max, ASSAY_INDEX_OCTREE, &cache->store);
-    status              = status
-                              ? status
-                              : assay_hemisphere_create(cache->context, &settings->layout, &cache->hemisphere);
+    cache->world    = world;
+    cache->context  = scene->context;
+    cache->settings = *settings;
+    cache->seed     = seed;
+    cache->level    = level;
+    cache->diagonal = vec3_length(vec3_sub(scene->bounds_max, scene->bounds_min));
+    assay_status status =
+        allocate(cache) ? ASSAY_OK : assay_fail_memory(cache->context, "the irradiance cache");
+    status = status
+                 ? status
+                 : assay_record_store_create(cache->context, &settings->rules, scene->bounds_min,
+                                             scene->bounds_max, ASSAY_INDEX_OCTREE, &cache->store);
+    status = status
+                 ? status
+                 : assay_hemisphere_create(cache->context, &settings->layout, &cache->hemisphere);
     if (status != ASSAY_OK) {
         destroy(cache);
         *status_out = status;
@@ -174,19 +183,21 @@ assay_status assay_irradiance_cache_create_beside(assay_irradiance_cache        
 
 /* ---- asking ---- */
 
-static assay_status find(assay_irradiance_cache *cache, const assay_gather_site *site,
-                         uint32_t limit, int worker)
+/* Eq. 2.9.  Up to a = 1 one record is enough, as its weight is at least 1 / a. */
+static assay_status ask_enough(assay_irradiance_cache *cache, const assay_gather_site *site,
+                               int worker, bool *enough_out)
 {
-    return assay_record_store_find(cache->store, site->position, site->frame.z, limit,
-                                   &cache->workers[worker].found);
-}
-
-/* Eq. 2.9. */
-static bool knows_enough(const assay_irradiance_cache *cache, int worker)
-{
-    const assay_contributions *found = &cache->workers[worker].found;
-    return found->count > 0 && (cache->settings.rules.weight == ASSAY_WEIGHT_TABELLION ||
-                                found->weight >= cache->settings.rules.a);
+    const assay_record_rules *rules = &cache->settings.rules;
+    cache_worker             *own   = &cache->workers[worker];
+    if (rules->weight == ASSAY_WEIGHT_TABELLION || rules->a <= 1.0) {
+        *enough_out = assay_record_store_reaches(cache->store, site->position, site->frame.z,
+                                                 &own->last_reaching);
+        return ASSAY_OK;
+    }
+    const assay_status status = assay_record_store_find(cache->store, site->position, site->frame.z,
+                                                        UINT32_MAX, &own->found);
+    *enough_out               = own->found.count > 0 && own->found.weight >= rules->a;
+    return status;
 }
 
 /* HEURISTIC: where no record reaches, the one that would with the smallest a. */
@@ -258,23 +269,34 @@ static assay_rgb light_by_path(void *user, int cell, assay_vertex *vertex, assay
     return rgb_add(light.direct, light.indirect);
 }
 
-/* Where the next level answers, what it will be asked is collected first, ... */
-static assay_rgb note_point(void *user, int cell, assay_vertex *vertex, assay_random *random,
-                            int worker)
+/* Where the next level answers, what it will be asked is told to it before. */
+typedef struct {
+    assay_irradiance_cache *cache;
+    size_t                  count;
+} seen_points;
+
+enum { CHUNK = 64 };
+
+static assay_status note_points(void *user, uint64_t chunk, int worker)
 {
-    assay_irradiance_cache *cache = user;
-    (void)random;
+    const seen_points      *seen  = user;
+    assay_irradiance_cache *cache = seen->cache;
     (void)worker;
-    assay_vertex_dress(cache->world, vertex);
-    const assay_bsdf_view view = assay_bsdf_seen_from(&vertex->bsdf, vertex->wo_local);
-    cache->seen[cell]          = (assay_cache_point){
-                 .site   = assay_gather_site_of(vertex),
-                 .wanted = !rgb_is_black(assay_bsdf_view_lambert(&view)),
-    };
-    return rgb_grey(0.0);
+    for (size_t i = chunk * CHUNK; i < (chunk + 1) * CHUNK && i < seen->count; i++) {
+        cache->seen[i] = (assay_cache_point){.wanted = false};
+        if (cache->hits[i].hit) {
+            assay_vertex *vertex = &cache->hits[i].vertex;
+            assay_vertex_dress(cache->world, vertex);
+            const assay_bsdf_view view = assay_bsdf_seen_from(&vertex->bsdf, vertex->wo_local);
+            cache->seen[i]             = (assay_cache_point){
+                            .site   = assay_gather_site_of(vertex),
+                            .wanted = !rgb_is_black(assay_bsdf_view_lambert(&view)),
+            };
+        }
+    }
+    return ASSAY_OK;
 }
 
-/* ... and then the same rays are traced again. */
 static assay_rgb light_by_cache(void *user, int cell, assay_vertex *vertex, assay_random *random,
                                 int worker)
 {
@@ -282,7 +304,6 @@ static assay_rgb light_by_cache(void *user, int cell, assay_vertex *vertex, assa
     assay_ray_counts       *counts = &cache->worker_counts[worker];
     assay_path_settings     path   = cache->next->settings.path;
     (void)cell;
-    assay_vertex_dress(cache->world, vertex);
     const assay_bsdf_view view    = assay_bsdf_seen_from(&vertex->bsdf, vertex->wo_local);
     const assay_rgb       lambert = assay_bsdf_view_lambert(&view);
     assay_rgb             cached  = rgb_grey(0.0);
@@ -303,30 +324,41 @@ static assay_rgb light_by_cache(void *user, int cell, assay_vertex *vertex, assa
     return rgb_add(cached, assay_path_scatter(cache->world, &path, vertex, random, counts).direct);
 }
 
+/* Asks the next level to know enough wherever a block of cells looks, and then for the light. */
+static assay_status gather_block(assay_irradiance_cache *cache, const assay_gatherer *gatherer,
+                                 const assay_gather_site *site, uint64_t item, int first, int count)
+{
+    seen_points  seen = {cache, (size_t)count};
+    assay_status status =
+        assay_gather_rays(gatherer, site, item, first, count, cache->hemisphere, cache->hits);
+    status = status ? status
+                    : assay_parallel_for(cache->context, NULL, (seen.count + CHUNK - 1) / CHUNK,
+                                         note_points, &seen);
+    status = status ? status
+                    : assay_irradiance_cache_fill(cache->next, NULL, 0, 0, seen.count, cache->seen,
+                                                  NULL);
+    return status ? status
+                  : assay_gather_light(gatherer, first, count, cache->hits, cache->hemisphere);
+}
+
 static assay_status gather(assay_irradiance_cache *cache, const assay_gather_site *site)
 {
-    assay_gatherer gatherer = {.world         = cache->world,
-                               .seed          = cache->seed,
-                               .radiance      = light_by_path,
-                               .user          = cache,
-                               .worker_counts = cache->worker_counts};
-    const uint64_t item =
+    const assay_gatherer gatherer = {.world         = cache->world,
+                                     .seed          = cache->seed,
+                                     .radiance      = cache->next ? light_by_cache : light_by_path,
+                                     .user          = cache,
+                                     .worker_counts = cache->worker_counts};
+    const uint64_t       item =
         (uint64_t)cache->level << LEVEL_SHIFT | assay_record_store_count(cache->store);
-    if (cache->next) {
-        const size_t cells =
-            (size_t)cache->settings.layout.theta * (size_t)cache->settings.layout.phi;
-        memset(cache->seen, 0, cells * sizeof *cache->seen);
-        gatherer.radiance   = note_point;
-        assay_status status = assay_gather(&gatherer, site, item, cache->hemisphere);
-        status =
-            status ? status
-                   : assay_irradiance_cache_fill(cache->next, NULL, 0, 0, cells, cache->seen, NULL);
-        if (status != ASSAY_OK) {
-            return status;
-        }
-        gatherer.radiance = light_by_cache;
+    if (!cache->next) {
+        return assay_gather(&gatherer, site, item, cache->hemisphere);
     }
-    const assay_status status = assay_gather(&gatherer, site, item, cache->hemisphere);
+    const int    cells  = cache->settings.layout.theta * cache->settings.layout.phi;
+    assay_status status = ASSAY_OK;
+    for (int first = 0; first < cells && status == ASSAY_OK; first += WAVE) {
+        const int count = cells - first < WAVE ? cells - first : WAVE;
+        status          = gather_block(cache, &gatherer, site, item, first, count);
+    }
     for (int i = 0; status != ASSAY_OK && i < assay_context_threads(cache->context); i++) {
         if (cache->workers[i].refused) {
             return assay_fail_memory(cache->context, "a look into the irradiance cache");
@@ -342,6 +374,29 @@ static void to_world(const assay_frame3 *frame, assay_vec3 gradient[3])
     }
 }
 
+/* How far the light may go on changing as it does here until nothing is left of it, m. */
+static double gradient_distance(const assay_record *record)
+{
+    const assay_rgb  e = record->irradiance;
+    const assay_vec3 t =
+        vec3_add(vec3_add(record->translation[0], record->translation[1]), record->translation[2]);
+    const double change = vec3_length(t);
+    return change > 0.0 ? (e.r + e.g + e.b) / change : INFINITY;
+}
+
+/* A radius that was made larger than that distance (by its lower limit, or where channels differ)
+ * would have the record say much more, or less than nothing, within it. */
+static void limit_gradient(assay_record *record)
+{
+    const double e[3] = {record->irradiance.r, record->irradiance.g, record->irradiance.b};
+    for (int c = 0; c < 3; c++) {
+        const double change = vec3_length(record->translation[c]) * record->radius;
+        if (change > e[c]) {
+            record->translation[c] = vec3_scale(record->translation[c], e[c] / change);
+        }
+    }
+}
+
 /* R_k from what was seen: limits of the settings last, the lower one strongest. */
 static assay_status find_radius(assay_irradiance_cache *cache, const assay_cache_point *point,
                                 assay_record *record)
@@ -351,6 +406,9 @@ static assay_status find_radius(assay_irradiance_cache *cache, const assay_cache
     double radius = tabellion ? 0.5 * record->nearest : record->mean;
     /* Where nothing is seen the light changes nowhere, as far as one can tell. */
     radius = radius < cache->diagonal ? radius : cache->diagonal;
+    if (s->gradient_limit) {
+        radius = fmin(radius, gradient_distance(record));
+    }
     if (s->neighbour_clamp) {
         const assay_status status =
             assay_neighbour_clamp_record(cache->store, record->position, &radius);
@@ -388,6 +446,9 @@ static assay_status make_record(assay_irradiance_cache *cache, const assay_cache
     to_world(&site->frame, record.rotation);
     to_world(&site->frame, record.translation);
     status = find_radius(cache, point, &record);
+    if (s->gradient_limit) {
+        limit_gradient(&record);
+    }
     if (status == ASSAY_OK && s->neighbour_clamp) {
         status = assay_neighbour_clamp_others(cache->store, &record, cache->diagonal);
     }
@@ -414,28 +475,26 @@ typedef struct {
     size_t                   count;
 } fill_wave;
 
-enum { CHUNK = 64 };
-
 static assay_status look_at_points(void *user, uint64_t chunk, int worker)
 {
     const fill_wave        *wave  = user;
     assay_irradiance_cache *cache = wave->cache;
     for (size_t i = chunk * CHUNK; i < (chunk + 1) * CHUNK && i < wave->count; i++) {
         const assay_cache_point *point = &wave->points[i];
-        const assay_status       status =
-            point->wanted ? find(cache, &point->site, UINT32_MAX, worker) : ASSAY_OK;
-        if (status != ASSAY_OK) {
-            return status;
+        cache->covered[i]              = true;
+        if (point->wanted &&
+            ask_enough(cache, &point->site, worker, &cache->covered[i]) != ASSAY_OK) {
+            return ASSAY_ERR_MEMORY;
         }
-        cache->covered[i] = !point->wanted || knows_enough(cache, worker);
     }
     return ASSAY_OK;
 }
 
 static assay_status serve(assay_irradiance_cache *cache, const assay_cache_point *point)
 {
-    const assay_status status = find(cache, &point->site, UINT32_MAX, 0);
-    if (status != ASSAY_OK || knows_enough(cache, 0) ||
+    bool               enough = false;
+    const assay_status status = ask_enough(cache, &point->site, 0, &enough);
+    if (status != ASSAY_OK || enough ||
         assay_record_store_count(cache->store) >= cache->settings.max_records) {
         return status;
     }

@@ -28,6 +28,7 @@ typedef struct {
     assay_mean_weight       mean;
     double                  r_min, r_max;               /* m; 0 and INFINITY: no limit          */
     double                  r_min_pixels, r_max_pixels; /* in footprints of the point; the same */
+    bool                    gradient_limit;             /* R <= E / |gradient| [krivanek05]     */
     bool                    neighbour_clamp;            /* [krivanek06]                         */
     bool                    normal_gradient;            /* along the normal, too                */
     uint32_t                max_records;                /* a level                              */

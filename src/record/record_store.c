@@ -20,6 +20,7 @@ struct assay_record_store {
     assay_octree      *octree; /* NULL: a list */
     assay_record      *records;
     size_t             count, capacity;
+    uint64_t           version; /* of what neighbourhoods were drawn from */
 };
 
 /* ---- making ---- */
@@ -90,6 +91,7 @@ assay_status assay_record_store_add(assay_record_store *store, const assay_recor
     }
     if (status == ASSAY_OK) {
         store->records[store->count++] = *record;
+        store->version++;
     }
     return status;
 }
@@ -99,6 +101,7 @@ void assay_record_store_shrink(assay_record_store *store, uint32_t number, doubl
     assert(number < store->count && radius > 0.0 && radius <= store->records[number].radius);
     assay_record *record = &store->records[number];
     record->radius       = radius;
+    store->version++;
     if (store->octree) {
         assay_octree_shrink(store->octree, number, assay_record_reach(record, &store->rules));
     }
@@ -133,26 +136,30 @@ void assay_contributions_release(assay_contributions *list)
     if (list->items) {
         assay_release(list->context, list->items);
     }
+    if (list->around.items) {
+        assay_release(list->context, list->around.items);
+    }
     *list = (assay_contributions){0};
 }
 
 /* Not assay_grow: its message would be written by several workers at once. */
-static bool make_room(assay_contributions *list, size_t needed)
+static bool make_room(assay_context *context, assay_contribution **items, size_t *capacity,
+                      size_t needed)
 {
-    if (needed <= list->capacity) {
+    if (needed <= *capacity) {
         return true;
     }
     const size_t        wanted = needed < 32 ? 64 : 2 * needed;
-    assay_contribution *items  = assay_allocate(list->context, wanted, sizeof *items);
-    if (!items) {
+    assay_contribution *grown  = assay_allocate(context, wanted, sizeof *grown);
+    if (!grown) {
         return false;
     }
-    if (list->items) {
-        memcpy(items, list->items, list->capacity * sizeof *items);
-        assay_release(list->context, list->items);
+    if (*items) {
+        memcpy(grown, *items, *capacity * sizeof *grown);
+        assay_release(context, *items);
     }
-    list->items    = items;
-    list->capacity = wanted;
+    *items    = grown;
+    *capacity = wanted;
     return true;
 }
 
@@ -201,7 +208,7 @@ static assay_status consider(const question *q, size_t number, assay_contributio
     if (!(weight > 0.0)) {
         return ASSAY_OK;
     }
-    if (!make_room(list, list->count + *found + 1)) {
+    if (!make_room(list->context, &list->items, &list->capacity, list->count + *found + 1)) {
         return ASSAY_ERR_MEMORY;
     }
     list->items[list->count + (*found)++] = (assay_contribution){(uint32_t)number, weight};
@@ -236,22 +243,111 @@ static assay_status consider_near(const question *q, size_t end, assay_contribut
     return status;
 }
 
+/* HEURISTIC: a fourth of the smallest reach of what was found.  Such a ball offers half as many
+ * again as reach its middle, and serves some ten pixels. */
+static double follow_distance(const assay_contributions *list)
+{
+    double least = INFINITY;
+    for (size_t i = 0; i < list->count; i++) {
+        const assay_record *record = &list->store->records[list->items[i].number];
+        least                      = fmin(least, assay_record_reach(record, &list->store->rules));
+    }
+    return isfinite(least) ? 0.25 * least : 0.0;
+}
+
+/* Draws the neighbourhood anew. */
+static assay_status look_around(const question *q, double radius, assay_contributions *list)
+{
+    assay_neighbourhood *around = &list->around;
+    assay_octree_walk    walk;
+    assay_octree_walk_around(&walk, q->store->octree, q->position, (1.0 + 1e-12) * radius);
+    *around         = (assay_neighbourhood){.version  = q->store->version,
+                                            .centre   = q->position,
+                                            .radius   = -1.0,
+                                            .items    = around->items,
+                                            .capacity = around->capacity};
+    uint32_t number = assay_octree_walk_next(&walk);
+    while (number != ASSAY_OCTREE_END) {
+        if (!make_room(list->context, &around->items, &around->capacity, around->count + 1)) {
+            return ASSAY_ERR_MEMORY;
+        }
+        around->items[around->count++] = (assay_contribution){.number = number};
+        number                         = assay_octree_walk_next(&walk);
+    }
+    sort_by_number(around->items, around->count);
+    around->radius = radius;
+    return ASSAY_OK;
+}
+
+static bool is_around(const question *q, const assay_contributions *list)
+{
+    const assay_neighbourhood *around = &list->around;
+    const assay_vec3           off    = vec3_sub(q->position, around->centre);
+    return list->store == q->store && around->version == q->store->version &&
+           around->radius > 0.0 && vec3_dot(off, off) <= around->radius * around->radius;
+}
+
+/* How far the neighbourhood of the query's place is worth drawing, m: not at all where it is far
+ * from that of the query before. */
+static double worth_drawing(const question *q, const assay_contributions *list)
+{
+    if (list->store != q->store) {
+        return 0.0;
+    }
+    const assay_vec3 moved = vec3_sub(q->position, list->position);
+    const double     near  = follow_distance(list);
+    return vec3_dot(moved, moved) <= near * near ? near : 0.0;
+}
+
+static assay_status consider_neighbours(const question *q, size_t end, assay_contributions *list,
+                                        size_t *found)
+{
+    assay_status status = ASSAY_OK;
+    for (size_t i = 0; i < list->around.count && status == ASSAY_OK; i++) {
+        const uint32_t number = list->around.items[i].number;
+        status                = number < end ? consider(q, number, list, found) : ASSAY_OK;
+    }
+    return status;
+}
+
+static assay_status know_around(const question *q, assay_contributions *list, bool *known_out)
+{
+    *known_out = is_around(q, list);
+    if (*known_out || !q->store->octree) {
+        return ASSAY_OK;
+    }
+    const double       radius = worth_drawing(q, list);
+    const assay_status status = radius > 0.0 ? look_around(q, radius, list) : ASSAY_OK;
+    *known_out                = status == ASSAY_OK && radius > 0.0;
+    return status;
+}
+
 static assay_status answer(const question *q, size_t limit, assay_contributions *list)
 {
-    const size_t end   = limit < q->store->count ? limit : q->store->count;
-    size_t       found = 0;
-    list->context      = q->store->context;
-    const assay_status status =
-        (q->store->octree ? consider_near : consider_each)(q, end, list, &found);
+    const size_t end    = limit < q->store->count ? limit : q->store->count;
+    size_t       found  = 0;
+    list->context       = q->store->context;
+    bool         known  = false;
+    assay_status status = q->distance > 0.0 ? ASSAY_OK : know_around(q, list, &known);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    if (known) {
+        status = consider_neighbours(q, end, list, &found);
+    } else {
+        status = (q->store->octree ? consider_near : consider_each)(q, end, list, &found);
+        sort_by_number(list->items + list->count, found);
+    }
     if (status != ASSAY_OK) {
         return status;
     }
     if (found > 0) {
-        sort_by_number(list->items + list->count, found);
         memmove(list->items, list->items + list->count, found * sizeof *list->items);
     }
-    list->count  = found;
-    list->weight = 0.0;
+    list->count    = found;
+    list->weight   = 0.0;
+    list->store    = q->store;
+    list->position = q->position;
     for (size_t i = 0; i < found; i++) {
         list->weight += list->items[i].weight;
     }
@@ -263,6 +359,35 @@ assay_status assay_record_store_find(const assay_record_store *store, assay_vec3
 {
     const question q = {.store = store, .position = position, .normal = normal};
     return answer(&q, limit, list);
+}
+
+bool assay_record_store_reaches(const assay_record_store *store, assay_vec3 position,
+                                assay_vec3 normal, uint32_t *hint)
+{
+    const question q = {.store = store, .position = position, .normal = normal};
+    if (*hint < store->count && ask(&q, *hint) > 0.0) {
+        return true;
+    }
+    if (!store->octree) {
+        for (uint32_t i = 0; i < store->count; i++) {
+            if (ask(&q, i) > 0.0) {
+                *hint = i;
+                return true;
+            }
+        }
+        return false;
+    }
+    assay_octree_walk walk;
+    assay_octree_walk_about(&walk, store->octree, position);
+    uint32_t number = assay_octree_walk_next(&walk);
+    while (number != ASSAY_OCTREE_END) {
+        if (ask(&q, number) > 0.0) {
+            *hint = number;
+            return true;
+        }
+        number = assay_octree_walk_next(&walk);
+    }
+    return false;
 }
 
 assay_status assay_record_store_near(const assay_record_store *store, assay_vec3 position,

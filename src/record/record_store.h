@@ -50,13 +50,26 @@ typedef struct {
     double   weight;
 } assay_contribution;
 
+/* Records that may contribute within a ball, ascending by number: what queries that follow one
+ * another closely ask instead of the index. */
+typedef struct {
+    uint64_t            version; /* of the store */
+    assay_vec3          centre;
+    double              radius; /* m; < 0: nothing is known */
+    assay_contribution *items;  /* weights are not set      */
+    size_t              count, capacity;
+} assay_neighbourhood;
+
 /* A list of them, ascending by number; a worker's scratch, made with zeros and released at the
  * end (before its context is destroyed). */
 typedef struct {
-    assay_context      *context; /* set by the first query */
-    assay_contribution *items;
-    size_t              count, capacity;
-    double              weight; /* the sum, in that order */
+    assay_context            *context; /* set by the first query */
+    assay_contribution       *items;
+    size_t                    count, capacity;
+    double                    weight;   /* the sum, in that order */
+    const assay_record_store *store;    /* of the last query, ... */
+    assay_vec3                position; /* ... its place, ...     */
+    assay_neighbourhood       around;   /* ... and what is there  */
 } assay_contributions;
 
 void assay_contributions_release(assay_contributions *list);
@@ -65,6 +78,11 @@ void assay_contributions_release(assay_contributions *list);
  * it was on error.  Errors: MEMORY. */
 assay_status assay_record_store_find(const assay_record_store *store, assay_vec3 position,
                                      assay_vec3 normal, uint32_t limit, assay_contributions *list);
+
+/* Whether any record contributes at a point.  hint: a number to try first, of the record that did
+ * where the answer was true before; any value will do. */
+bool assay_record_store_reaches(const assay_record_store *store, assay_vec3 position,
+                                assay_vec3 normal, uint32_t *hint);
 
 /* Eq. 2.8: the mean of what they say, by weight; list->count > 0. */
 assay_rgb assay_record_store_interpolate(const assay_record_store  *store,

@@ -87,7 +87,7 @@ static result render(assay_context *context, assay_scene *scene, const view *v, 
     result               r       = {0};
     options.width = options.height = SIDE;
     options.camera                 = v->camera;
-    options.layers                 = "color";
+    options.layers                 = "color,split";
     options.seed                   = seed;
     require(context, assay_method_params(context, method, &params));
     set(context, params, "bounces", v->bounces);
@@ -110,15 +110,16 @@ static const float *pixels(const assay_image *image, const char *prefix, int cha
     return found.data.f32;
 }
 
-/* Squared relative error of an image against two references; of NULL: of the first reference's own
- * variance, for one sample a pixel. */
-static double squared_error(const assay_image *image, const assay_image *one,
+/* Squared relative error of a layer of an image against two references, in parts of the whole
+ * color; of NULL: of the first reference's own variance, for one sample a pixel. */
+static double squared_error(const char *layer, const assay_image *image, const assay_image *one,
                             const assay_image *two)
 {
     double sum = 0.0;
     for (int c = 0; c < CHANNELS; c++) {
         const float *a = pixels(one, "", c), *b = pixels(two, "", c);
-        const float *x    = image ? pixels(image, "", c) : NULL;
+        const float *p = pixels(one, layer, c), *q = pixels(two, layer, c);
+        const float *x    = image ? pixels(image, layer, c) : NULL;
         const float *v    = pixels(one, "Variance.", c);
         double       mean = 0.0;
         for (int i = 0; i < SIDE * SIDE; i++) {
@@ -127,7 +128,7 @@ static double squared_error(const assay_image *image, const assay_image *one,
         for (int i = 0; i < SIDE * SIDE; i++) {
             const double truth = 0.5 * ((double)a[i] + b[i]);
             const double error =
-                x ? ((double)x[i] - a[i]) * ((double)x[i] - b[i]) : (double)v[i] * REFERENCE_SPP;
+                x ? ((double)x[i] - p[i]) * ((double)x[i] - q[i]) : (double)v[i] * REFERENCE_SPP;
             sum += error / (truth * truth + 0.01 * mean * mean);
         }
     }
@@ -156,8 +157,8 @@ static void compare(assay_context *context, const view *v, const char *settings)
     snprintf(spp, sizeof spp, "spp=%d", REFERENCE_SPP);
     const result one = render(context, scene, v, "path", spp, 2);
     const result two = render(context, scene, v, "path", spp, 3);
-    const double e   = squared_error(cache.image, one.image, two.image);
-    const double s   = squared_error(NULL, one.image, two.image);
+    const double e   = squared_error("", cache.image, one.image, two.image);
+    const double s   = squared_error("", NULL, one.image, two.image);
     /* Samples, and so seconds, that path takes to the same error. */
     const double a_sample = 0.5 * (one.seconds + two.seconds) / REFERENCE_SPP;
     const double path_for = a_sample * s / e;
@@ -165,6 +166,9 @@ static void compare(assay_context *context, const view *v, const char *settings)
            "times (asked: %.0f)\n",
            v->name, sqrt(e), (unsigned long long)cache.stats.records, cache.seconds, s / e,
            path_for, path_for / cache.seconds, v->asked);
+    printf("%-28s squared error %.2e: direct light %.2e, indirect %.2e\n", "", e,
+           squared_error("Direct.", cache.image, one.image, two.image),
+           squared_error("Indirect.", cache.image, one.image, two.image));
     assay_image_destroy(cache.image);
     assay_image_destroy(one.image);
     assay_image_destroy(two.image);

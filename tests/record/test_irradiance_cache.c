@@ -303,6 +303,50 @@ static void neighbours_are_clamped(void **state)
     lit_world_close(&w);
 }
 
+/* Where the wall's light falls off faster than distances say, closed forms of both E and its
+ * gradient give R; where R may not be as small, the gradient gives way. */
+static void gradients_limit_radii(void **state)
+{
+    (void)state;
+    lit_world                       w        = lit_world_wall(1);
+    assay_irradiance_cache_settings settings = lit_settings(64, 201);
+    settings.rules.a                         = 1e-3;
+    settings.gradient_limit                  = true;
+    const assay_cache_point points[]         = {lit_point(vec3(0.3, 0, 0.2), vec3(0, 1, 0)),
+                                                lit_point(vec3(0.9, 0, 0.3), vec3(0, 1, 0)),
+                                                lit_point(vec3(0.02, 0.2, 0.0), vec3(0, 1, 0))};
+    enum { COUNT = sizeof points / sizeof points[0] };
+    assay_irradiance_cache *cache = make_cache(&w, &settings);
+    settings.r_min                = 4.0;
+    assay_irradiance_cache *wide  = make_cache(&w, &settings);
+    assert_int_equal(fill(cache, COUNT, points, NULL), ASSAY_OK);
+    assert_int_equal(fill(wide, COUNT, points, NULL), ASSAY_OK);
+    int limited = 0;
+    for (uint32_t i = 0; i < COUNT; i++) {
+        const assay_record *r = assay_record_store_at(assay_irradiance_cache_store(cache), i);
+        const double        e = (double)closed_polygon(LIT_WALL, 4, r->position, r->normal);
+        const assay_vec3    t = closed_polygon_gradient(LIT_WALL, 4, r->position, r->normal);
+        const double falls    = e / vec3_length(vec3_mad(t, -vec3_dot(t, r->normal), r->normal));
+        print_message("#| R = %.4f m, E / |gradient| %.4f m, harmonic mean %.4f m\n", r->radius,
+                      falls, r->mean);
+        const double seen = fmin(r->mean, sqrt(5.0)); /* the scene's diagonal */
+        assert_true(fabs(r->radius - fmin(falls, seen)) < 0.03 * r->radius);
+        const assay_record *far = assay_record_store_at(assay_irradiance_cache_store(wide), i);
+        assert_true(far->radius == 4.0);
+        if (falls > seen) {
+            continue;
+        }
+        limited++;
+        assert_true(vec3_length(r->translation[1]) * 4.0 > 1.1 * r->irradiance.g);
+        assert_true(fabs(vec3_length(far->translation[1]) * 4.0 / far->irradiance.g - 1.0) < 1e-12);
+        assert_true(vec3_dot(far->translation[1], r->translation[1]) > 0.0);
+    }
+    assert_int_equal(limited, 2);
+    assay_irradiance_cache_destroy(cache);
+    assay_irradiance_cache_destroy(wide);
+    lit_world_close(&w);
+}
+
 static void records_are_limited(void **state)
 {
     (void)state;
@@ -349,6 +393,7 @@ int main(void)
         cmocka_unit_test(enough_is_the_sum_of_weights),
         cmocka_unit_test(radii_keep_their_limits),
         cmocka_unit_test(neighbours_are_clamped),
+        cmocka_unit_test(gradients_limit_radii),
         cmocka_unit_test(records_are_limited),
         cmocka_unit_test(tabellion_radius),
     };

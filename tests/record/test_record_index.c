@@ -110,6 +110,7 @@ typedef struct {
     double              a;
     int                 distribution;
     size_t              contributions;
+    uint32_t            hint;
 } pair;
 
 static void pair_make(assay_context *context, pair *s, int distribution,
@@ -123,6 +124,15 @@ static void pair_make(assay_context *context, pair *s, int distribution,
         ASSAY_OK);
     assert_int_equal(
         assay_record_store_create(context, rules, low, high, ASSAY_INDEX_LIST, &s->list), ASSAY_OK);
+}
+
+/* So that what was known of a neighbourhood no longer is. */
+static void pair_add_at(pair *s, assay_vec3 position, assay_random *random)
+{
+    assay_record r = random_record(s->distribution, random);
+    r.position     = position;
+    assert_int_equal(assay_record_store_add(s->octree, &r), ASSAY_OK);
+    assert_int_equal(assay_record_store_add(s->list, &r), ASSAY_OK);
 }
 
 static void pair_fill(pair *s, int count, assay_random *random)
@@ -189,14 +199,36 @@ static void check_query(pair *s, assay_vec3 p, assay_vec3 n, uint32_t limit)
     }
 }
 
+static void check_reaches(pair *s, assay_vec3 p, assay_vec3 n)
+{
+    uint32_t   hint = 0;
+    const bool any  = s->judge.count > 0;
+    assert_int_equal(assay_record_store_reaches(s->octree, p, n, &s->hint), any);
+    assert_int_equal(assay_record_store_reaches(s->list, p, n, &hint), any);
+}
+
+/* Queries of which half follow closely on the one before, as those of an image do. */
 static void check_queries(pair *s, int count, assay_random *random)
 {
-    const double records = assay_record_store_count(s->list);
+    assay_vec3 p = ZERO, n = UP;
     for (int i = 0; i < count; i++) {
-        assay_vec3 p, n;
-        random_query(s, random, &p, &n);
-        const bool all = assay_random_next(random) < 0.7;
+        if (assay_random_next(random) < 0.5) {
+            random_query(s, random, &p, &n);
+        } else if (s->judge.count > 0) {
+            const uint32_t      k = s->judge.items[0].number;
+            const assay_record *r = assay_record_store_at(s->list, k);
+            p = vec3_mad(p, s->a * r->radius * exp2(random_in(random, -10.0, 0.0)),
+                         random_unit(random));
+        }
+        const double records = assay_record_store_count(s->list);
+        const bool   all     = assay_random_next(random) < 0.7;
         check_query(s, p, n, all ? UINT32_MAX : (uint32_t)random_in(random, 0.0, 1.1 * records));
+        if (all) {
+            check_reaches(s, p, n);
+        }
+        if (i % 1000 == 500 && vec3_finite(p)) {
+            pair_add_at(s, p, random);
+        }
     }
 }
 
