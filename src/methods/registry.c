@@ -9,6 +9,7 @@
 #include "methods/radiance_cache/radiance_cache_method.h"
 #include "methods/splat/splat_method.h"
 
+/* clang-format off */
 static const assay_method *const METHODS[] = {
     &assay_method_path,
     &assay_method_hsh_environment,
@@ -16,6 +17,7 @@ static const assay_method *const METHODS[] = {
     &assay_method_radiance_cache,
     &assay_method_splat,
 };
+/* clang-format on */
 
 enum { METHOD_COUNT = sizeof METHODS / sizeof METHODS[0] };
 

@@ -150,7 +150,8 @@ typedef struct {
     assay_splat_buffer       *buffer;
     const assay_splat_source *source;
     uint32_t                  first;
-    const assay_splat_box    *boxes; /* of the records from first on                           */
+    assay_splat_box           alone; /* of a single record                                     */
+    const assay_splat_box    *boxes; /* of the records from first on; NULL: alone              */
     const uint32_t           *list;  /* of each row of tiles, one after the other: ascending   */
     const size_t             *ends;  /* of the rows' parts of the list                         */
     assay_splat_box           tiles; /* that may be touched                                    */
@@ -242,7 +243,8 @@ static assay_status splat_part(const splat *s, const assay_splat_box *part)
 static assay_status splat_record(const splat_job *job, uint32_t number, const assay_splat_box *tile,
                                  size_t tile_index, int worker)
 {
-    const assay_splat_box part = intersect(job->boxes[number - job->first], *tile);
+    const assay_splat_box part =
+        intersect(job->boxes ? job->boxes[number - job->first] : job->alone, *tile);
     if (is_empty(&part)) {
         return ASSAY_OK;
     }
@@ -299,7 +301,7 @@ static assay_status splat_one(splat_job *job)
     if (is_empty(&box)) {
         return ASSAY_OK;
     }
-    job->boxes = &box;
+    job->alone = box;
     job->tiles =
         (assay_splat_box){box.x0 / TILE, box.y0 / TILE, tile_after(box.x1), tile_after(box.y1)};
     const uint64_t tiles =
@@ -358,8 +360,8 @@ static assay_status splat_many(splat_job *job, uint32_t count)
         memcpy(ends + rows, ends, (size_t)rows * sizeof *ends);
         list = assay_allocate(context, ends[rows - 1], sizeof *list);
     }
-    assay_status status = list ? ASSAY_OK : assay_fail_memory(context, "the bounds of records");
-    if (status == ASSAY_OK) {
+    assay_status status = ASSAY_ERR_MEMORY;
+    if (list) {
         fill_rows(boxes, job->first, count, ends + rows, list);
         job->boxes = boxes;
         job->list  = list;
@@ -367,6 +369,8 @@ static assay_status splat_many(splat_job *job, uint32_t count)
         job->tiles = (assay_splat_box){0, 0, job->buffer->columns, rows};
         status = assay_parallel_for(context, NULL, (uint64_t)rows * (uint64_t)job->buffer->columns,
                                     splat_tile, job);
+    } else {
+        assay_fail_memory(context, "the bounds of records");
     }
     assay_release(context, boxes);
     assay_release(context, ends);

@@ -1,6 +1,7 @@
 /* rendered.c - see rendered.h. */
 #include "support/rendered.h"
 
+#include <ftw.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -101,18 +102,21 @@ bool rendered_same(const rendered *a, const rendered *b)
 
 double rendered_difference(const rendered *a, const rendered *b, const char *channel)
 {
-    assay_channel x, y;
+    assay_channel x = {0}, y = {0};
     require(a);
     require(b);
-    assert_true(assay_image_find_channel(a->image, channel, &x) &&
-                assay_image_find_channel(b->image, channel, &y));
+    if (!assay_image_find_channel(a->image, channel, &x) ||
+        !assay_image_find_channel(b->image, channel, &y)) {
+        fail_msg("no channel %s", channel);
+        return INFINITY;
+    }
     const size_t pixels =
         (size_t)assay_image_width(a->image) * (size_t)assay_image_height(a->image);
     double largest = 0.0, sum = 0.0;
     for (size_t i = 0; i < pixels; i++) {
-        const double d = fabs((double)x.data.f32[i] - y.data.f32[i]);
-        largest        = d > largest ? d : largest;
-        sum += 0.5 * (fabs(x.data.f32[i]) + fabs(y.data.f32[i]));
+        const double one = x.data.f32[i], other = y.data.f32[i], d = fabs(one - other);
+        largest = d > largest ? d : largest;
+        sum += 0.5 * (fabs(one) + fabs(other));
     }
     return largest > 0.0 ? largest * (double)pixels / sum : 0.0;
 }
@@ -125,11 +129,17 @@ char *rendered_folder(void)
     return folder;
 }
 
+static int remove_entry(const char *path, const struct stat *status, int type, struct FTW *at)
+{
+    (void)status;
+    (void)type;
+    (void)at;
+    return remove(path);
+}
+
 void rendered_remove(char *folder)
 {
-    char command[RENDERED_TEXT];
-    snprintf(command, sizeof command, "rm -r '%s'", folder);
-    assert_int_equal(system(command), 0);
+    assert_int_equal(nftw(folder, remove_entry, 16, FTW_DEPTH | FTW_PHYS), 0);
     free(folder);
 }
 

@@ -52,8 +52,8 @@ bool splat_room_point(const assay_camera *camera, int width, int height, size_t 
     if (assay_random_next(&random) < 0.01) {
         return false;
     }
-    assay_camera_ray(camera, (double)(pixel % (size_t)width) + 0.5,
-                     (double)(pixel / (size_t)width) + 0.5, width, height, &origin, &direction);
+    const int x = (int)(pixel % (size_t)width), y = (int)(pixel / (size_t)width);
+    assay_camera_ray(camera, x + 0.5, y + 0.5, width, height, &origin, &direction);
     leave(origin, direction, position_out, normal_out);
     *normal_out = vec3_normalize(vec3_add(*normal_out, vec3(0.1 * u, 0.1 * v, 0.0)));
     return true;

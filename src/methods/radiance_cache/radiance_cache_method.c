@@ -135,12 +135,12 @@ static assay_status make_caches(cache_state *s, const assay_frame *frame)
 /* Materials are the same for all frames. */
 static assay_status prepare(void *state, const assay_frame *frame)
 {
-    cache_state *s               = state;
-    s->world                     = frame->world;
-    assay_status          status = s->materials.grids
-                                       ? ASSAY_OK
-                                       : assay_radiance_params_materials(s->context, frame->world->scene,
-                                                                         &s->params, &s->materials);
+    cache_state *s      = state;
+    s->world            = frame->world;
+    assay_status status = s->materials.grids
+                              ? ASSAY_OK
+                              : assay_radiance_params_materials(s->context, frame->world->scene,
+                                                                &s->params, &s->materials);
     if (status == ASSAY_OK && frame->frames_before == 0) {
         drop_caches(s);
         status = make_caches(s, frame);
