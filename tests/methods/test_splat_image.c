@@ -314,6 +314,13 @@ static void published_bounds(void **state)
     print_message("#| %s\n", s.r.warning);
     assert_true(s.r.warnings > 0);
     assert_true(rendered_difference(&good, &lossy, "IrradianceIndirect.G") > 1e-3);
+    /* A pixel that its own record never reaches is no reason to go on for ever. */
+    const setting endless[] = {
+        {"bounds", "published"}, {"a", "1.5"}, {"neighbour_clamp", "on"}, {NULL, NULL}};
+    rendered ended = rendered_make(&s.r, s.scene, SPLAT, endless);
+    assert_int_equal(ended.status, ASSAY_OK);
+    assert_true(ended.stats.records < 1600);
+    rendered_drop(&ended);
     rendered_drop(&good);
     rendered_drop(&lossy);
     close_studio(&s);

@@ -81,14 +81,15 @@ static assay_status serve(splat_layer *layer, const splat_rules *rules, const sp
     return rules->batch > 0 && layer->made % rules->batch == 0 ? tell(listener, layer) : ASSAY_OK;
 }
 
-/* Step 4. */
+/* Step 4.  A pixel whose own record a billboard loses is not asked again. */
 static assay_status detect(splat_layer *layer, const splat_rules *rules, const splat_order *order,
                            const splat_listener *listener)
 {
     assay_status status = ASSAY_OK;
     for (size_t i = 0; i < order->count && status == ASSAY_OK; i++) {
         const uint32_t pixel = order->pixels[i];
-        if (assay_splat_has_point(layer->buffer, pixel) && !knows_enough(layer, pixel)) {
+        if (assay_splat_has_point(layer->buffer, pixel) && layer->fate[pixel] != SPLAT_MADE &&
+            !knows_enough(layer, pixel)) {
             const uint32_t before = count_of(layer);
             status                = serve(layer, rules, order, pixel, listener);
             if (status == ASSAY_OK && count_of(layer) > before) {
@@ -101,7 +102,8 @@ static assay_status detect(splat_layer *layer, const splat_rules *rules, const s
 }
 
 /* A record that shrinks others leaves their old splats behind: those are done again, and points
- * that they covered are asked again.  Each round makes a record, so it ends. */
+ * that they covered are asked again.  Each round makes a record at a pixel that had none, so it
+ * ends. */
 static assay_status detect_again(splat_layer *layer, const splat_rules *rules,
                                  const splat_order *order, const splat_listener *listener)
 {
