@@ -139,6 +139,22 @@ static void same_as_irradiance_cache(void **state)
     close_studio(&s);
 }
 
+/* Its camera is orthographic. */
+static void from_far_away(void **state)
+{
+    (void)state;
+    const setting many[] = {{"a", "0.05"}, {NULL, NULL}};
+    studio        s;
+    rendering_open(&s.r, 1);
+    s.folder = rendered_folder();
+    assert_int_equal(assay_scene_load(s.r.context,
+                                      "scenes/rectangle-over-plane/rectangle-over-plane.gltf", NULL,
+                                      &s.scene),
+                     ASSAY_OK);
+    check_against(&s, IRRADIANCE, many, "orthographic");
+    close_studio(&s);
+}
+
 static void same_as_radiance_cache(void **state)
 {
     (void)state;
@@ -414,6 +430,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(same_as_irradiance_cache),
+        cmocka_unit_test(from_far_away),
         cmocka_unit_test(same_as_radiance_cache),
         cmocka_unit_test(agrees_with_path),
         cmocka_unit_test(no_seams),
