@@ -195,6 +195,22 @@ static void misses_again(void **state)
     end(&p);
 }
 
+/* wo, turned to the world, looks from the point to the eye; the ball is white. */
+static void check_brdf(const double *row, const double *position, bool on)
+{
+    const double eye[3] = {0.2, 0.1, 2.0};
+    double       off = 0.0, along = 0.0, length = 0.0;
+    for (int k = 0; k < 3 && on; k++) {
+        const double world = row[k] * row[9] + row[3 + k] * row[10] + row[6 + k] * row[11];
+        const double way   = eye[k] - position[k];
+        along += world * way;
+        length += way * way;
+        off = fmax(off, fabs(row[12 + k] - 1.0));
+    }
+    assert_true(on ? fabs(along - sqrt(length)) < 1e-9 && row[11] > 0.0 && off < 1e-12
+                   : isnan(row[0]) && isnan(row[14]));
+}
+
 /* Glossy pixels have steps of their own: on the ball and nowhere else. */
 static void glossy_steps(void **state)
 {
@@ -204,6 +220,7 @@ static void glossy_steps(void **state)
     assay_array *weights   = table(&p, "splat_glossy/batch.1/weight", PIXELS, 1);
     assay_array *positions = table(&p, "splat_glossy/position", PIXELS, 3);
     assay_array *result    = table(&p, "splat_glossy/result", PIXELS, 3);
+    assay_array *brdf      = table(&p, "splat_glossy/brdf", PIXELS, 15);
     int          glossy    = 0;
     for (size_t i = 0; i < PIXELS; i++) {
         const bool    on = !isnan(assay_array_values(positions)[3 * i]);
@@ -211,11 +228,13 @@ static void glossy_steps(void **state)
         glossy += on && r[0] != 0.0;
         assert_true(isfinite(r[0]) && (on || assay_array_values(weights)[i] == 0.0));
         assert_true(on || r[0] == 0.0);
+        check_brdf(assay_array_values(brdf) + 15 * i, assay_array_values(positions) + 3 * i, on);
     }
     assert_in_range(glossy, 100, PIXELS / 2);
     assay_array_destroy(weights);
     assay_array_destroy(positions);
     assay_array_destroy(result);
+    assay_array_destroy(brdf);
     end(&p);
 }
 

@@ -8,7 +8,7 @@
 #include "core/context.h"
 #include "core/numerics.h"
 
-enum { WHAT_SIZE = 64, NAME_SIZE = 128 };
+enum { WHAT_SIZE = 64, NAME_SIZE = 128, BRDF_COLUMNS = 15 };
 
 /* The columns of a pixel. */
 typedef void (*column_writer)(const splat_dump *dump, size_t pixel, double *row);
@@ -54,6 +54,25 @@ static void write_albedo(const splat_dump *dump, size_t pixel, double *row)
     put(row, vec3(c.r, c.g, c.b));
 }
 
+/* The frame of the BRDF, wo in it, base colour; NaN where the pixel is not glossy. */
+static void write_brdf(const splat_dump *dump, size_t pixel, double *row)
+{
+    assay_frame3 frame;
+    assay_vec3   wo;
+    assay_rgb    base;
+    for (int i = 0; i < BRDF_COLUMNS; i++) {
+        row[i] = NAN;
+    }
+    if (assay_splat_has_point(dump->layer->buffer, pixel)) {
+        splat_gloss_get(dump->image->gloss, pixel, &frame, &wo, &base);
+        put(row, frame.x);
+        put(row + 3, frame.y);
+        put(row + 6, frame.z);
+        put(row + 9, wo);
+        put(row + 12, vec3(base.r, base.g, base.b));
+    }
+}
+
 static void write_weight(const splat_dump *dump, size_t pixel, double *row)
 {
     row[0] = assay_splat_weight(dump->layer->buffer, pixel);
@@ -91,6 +110,9 @@ assay_status splat_dump_begin(const splat_image *image, const splat_layer *layer
     assay_status     status = add_table(&dump, "position", "m", 3, write_position);
     status                  = status ? status : add_table(&dump, "frame", "", 9, write_frame);
     status                  = status ? status : add_table(&dump, "albedo", "", 3, write_albedo);
+    if (status == ASSAY_OK && layer->source.say) {
+        status = add_table(&dump, "brdf", "", BRDF_COLUMNS, write_brdf);
+    }
     if (status == ASSAY_OK) {
         *dump_out = dump;
     }

@@ -111,6 +111,14 @@ void splat_gloss_set(splat_gloss *gloss, size_t pixel, const assay_material_grid
                                              .base_color = vertex->bsdf.base_color};
 }
 
+void splat_gloss_get(const splat_gloss *gloss, size_t pixel, assay_frame3 *frame_out,
+                     assay_vec3 *wo_out, assay_rgb *base_color_out)
+{
+    *frame_out      = gloss->pixels[pixel].frame;
+    *wo_out         = gloss->pixels[pixel].wo;
+    *base_color_out = gloss->pixels[pixel].base_color;
+}
+
 static double dot(size_t count, const double *a, const double *b)
 {
     double sum = 0.0;

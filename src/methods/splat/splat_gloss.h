@@ -20,6 +20,10 @@ void splat_gloss_begin(splat_gloss *gloss);
 void splat_gloss_set(splat_gloss *gloss, size_t pixel, const assay_material_grids *grids,
                      const assay_vertex *vertex);
 
+/* What was set: the frame of the BRDF (assay_material_frame), wo in it, and the base colour. */
+void splat_gloss_get(const splat_gloss *gloss, size_t pixel, assay_frame3 *frame_out,
+                     assay_vec3 *wo_out, assay_rgb *base_color_out);
+
 /* Of a splat source, whose user is the gloss. */
 assay_status splat_gloss_say(void *user, const assay_splat_place *place, uint32_t record,
                              assay_rgb *said_out);
