@@ -15,7 +15,7 @@ SAN     ?=
 # What `make deps` installs (Debian 12).
 DEPS_BUILD := gcc g++ make libembree-dev libopenexr-dev libtinygltf-dev libsleef-dev \
               librandom123-dev libpng-dev libjpeg-dev libcjson-dev libmd-dev
-DEPS_TEST  := libcmocka-dev clang libomp-dev
+DEPS_TEST  := libcmocka-dev clang
 DEPS_LINT  := clang-format clang-tidy cppcheck
 DEPS_REF   := libflint-arb-dev libflint-dev libmpfr-dev
 
@@ -23,9 +23,9 @@ DEPS_REF   := libflint-arb-dev libflint-dev libmpfr-dev
 override CPPFLAGS += -D_GNU_SOURCE -DASSAY_VERSION='"$(VERSION)"' -Iinclude -Isrc -Itests
 WARN     := -Wall -Wextra -Wshadow -Wundef -Wvla -Wpointer-arith -Wcast-align
 override CFLAGS += -std=c11 $(OPT) $(WARN) -Wstrict-prototypes -Wmissing-prototypes -ffp-contract=off \
-            -fvisibility=hidden -fPIC -fopenmp $(SAN)
+            -fvisibility=hidden -fPIC -pthread $(SAN)
 override CXXFLAGS += -std=c++17 $(OPT) $(WARN) -ffp-contract=off -fvisibility=hidden -fPIC $(SAN)
-override LDFLAGS += -fopenmp $(SAN)
+override LDFLAGS += -pthread $(SAN)
 override LDLIBS += -lembree3 -lOpenEXRCore -ltinygltf -lsleef -lpng -ljpeg -lcjson -lmd -lm -lstdc++
 
 LIB_C   := $(filter-out src/cli/%,$(wildcard src/*/*.c src/*/*/*.c))
@@ -33,6 +33,7 @@ LIB_CXX := $(wildcard src/*/*.cpp)
 CLI_C   := $(wildcard src/cli/*.c)
 GEN_C   := $(wildcard scenes/gen/*.c)
 BENCH_C := $(wildcard tests/bench/*.c)
+TABLE_C := $(wildcard tests/tables/*.c)
 HELP_C  := $(wildcard tests/support/*.c)
 TEST_C  := $(wildcard tests/*/test_*.c)
 LIB_O   := $(LIB_C:%.c=$(BUILD)/%.o) $(LIB_CXX:%.cpp=$(BUILD)/%.o)
@@ -42,11 +43,12 @@ HELP_O  := $(HELP_C:%.c=$(BUILD)/%.o)
 TESTS   := $(TEST_C:%.c=$(BUILD)/%)
 TEST_SCRIPTS := $(wildcard tests/*/test_*.sh)
 BENCHES := $(BENCH_C:%.c=$(BUILD)/%)
+TABLES  := $(TABLE_C:%.c=$(BUILD)/%)
 OURS    := $(wildcard include/assay/*.h src/*/*.[ch] src/*/*/*.[ch] src/*/*.cpp scenes/gen/*.[ch] \
              refdata/gen/*.[ch] tests/*/*.[ch])
 
 .PHONY: all help deps deps-test demo test install uninstall scenes ref ref-update figures layers \
-        format lint bench mutants check-sanitize check-arm64 fuzz clean
+        format lint bench tables mutants check-sanitize check-arm64 fuzz clean
 all: $(BUILD)/assay ## build the command
 
 help: ## list the targets
@@ -123,6 +125,9 @@ mutants: deps-test ## break the source on purpose, also where `make test` does n
 $(BUILD)/tests/bench/%: $(BUILD)/tests/bench/%.o $(BUILD)/libassay.a
 	$(CXX) $(LDFLAGS) $^ $(LDLIBS) -o $@
 
+$(BUILD)/tests/tables/%: $(BUILD)/tests/tables/%.o $(BUILD)/libassay.a
+	$(CXX) $(LDFLAGS) $^ $(LDLIBS) -o $@
+
 $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/libassay.a
 	$(CXX) $(LDFLAGS) $(FUZZ_LINK) $^ $(LDLIBS) -o $@
 
@@ -130,7 +135,7 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(HELP_O) $(filter-out %/main.o,$(GEN_O)) $
 	$(CXX) $(LDFLAGS) $^ -lcmocka $(LDLIBS) -o $@
 
 check-sanitize: deps-test ## the tests under ASan and UBSan
-	@LSAN_OPTIONS=suppressions=$(CURDIR)/tests/tools/lsan.supp $(MAKE) --no-print-directory test BUILD=build/sanitize CC=clang CXX=clang++ OPT="-O1 -g" \
+	@$(MAKE) --no-print-directory test BUILD=build/sanitize CC=clang CXX=clang++ OPT="-O1 -g" \
 	   SAN="-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer" \
 	   TEST_SCRIPTS="$(filter-out %/test_same_bits.sh %/test_install.sh %/test_mutants.sh,$(TEST_SCRIPTS))"
 
@@ -140,6 +145,10 @@ check-arm64: ## the same bits on aarch64, under qemu-user
 bench: ## ratios measured inside one run
 	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(BENCHES)
 	@for b in $(BENCHES); do echo "== $${b##*/}"; $$b || exit 1; done
+
+tables: ## the tables of docs/methods that take minutes
+	@$(MAKE) --no-print-directory -s -j$$(nproc) $(TABLES)
+	@for t in $(TABLES); do $$t || exit 1; done
 
 fuzz: ## fuzz the loaders for an hour (clang)
 	@tests/tools/fuzz.sh
@@ -213,10 +222,10 @@ CPPCHECK := cppcheck --quiet --error-exitcode=1 --enable=warning,performance,por
 lint: layers ## clang-format, clang-tidy, cppcheck: all clean
 	@$(call install_missing,$(DEPS_LINT))
 	clang-format --dry-run -Werror $(OURS)
-	clang-tidy --quiet $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) -- $(CPPFLAGS) -std=c11 -fopenmp \
+	clang-tidy --quiet $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) -- $(CPPFLAGS) -std=c11 \
 	  2>&1 | $(ONLY_FINDINGS)
 	clang-tidy --quiet $(LIB_CXX) -- $(CPPFLAGS) -std=c++17 2>&1 | $(ONLY_FINDINGS)
-	$(CPPCHECK) --std=c11 $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) $(TEST_C) $(BENCH_C)
+	$(CPPCHECK) --std=c11 $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) $(TEST_C) $(BENCH_C) $(TABLE_C)
 	$(CPPCHECK) --std=c++17 --suppress=passedByValue $(LIB_CXX)
 
 # ---- installing ----
@@ -232,7 +241,7 @@ install: all $(BUILD)/libassay.so ## install to $(DESTDIR)$(PREFIX)
 	printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$${prefix}/include' '' \
 	  'Name: assay' 'Description: reference renderer and test oracle for light caching' \
 	  'Version: $(VERSION)' 'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lassay' \
-	  'Libs.private: -fopenmp $(LDLIBS)' > $(DESTDIR)$(LIBDIR)/pkgconfig/assay.pc
+	  'Libs.private: -pthread $(LDLIBS)' > $(DESTDIR)$(LIBDIR)/pkgconfig/assay.pc
 
 uninstall: ## remove what install put there
 	rm -rf $(DESTDIR)$(PREFIX)/include/assay
@@ -244,5 +253,5 @@ clean: ## remove everything that was built
 	rm -rf build
 
 -include $(wildcard $(REF_BUILD)/*.d)
--include $(LIB_O:.o=.d) $(CLI_O:.o=.d) $(GEN_O:.o=.d) $(HELP_O:.o=.d) $(TESTS:=.d) $(BENCHES:=.d)
+-include $(LIB_O:.o=.d) $(CLI_O:.o=.d) $(GEN_O:.o=.d) $(HELP_O:.o=.d) $(TESTS:=.d) $(BENCHES:=.d) $(TABLES:=.d)
 .SECONDARY:

@@ -1,10 +1,11 @@
 /* context.c - messages, progress and threads of a set of calls. */
-#include <omp.h>
+#include <sched.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include "core/context_data.h"
 #include "core/machine_memory.h"
@@ -38,6 +39,15 @@ static void release_with_free(void *user, void *memory)
     free(memory);
 }
 
+/* Processors that this process may use. */
+static int processor_count(void)
+{
+    cpu_set_t  ours;
+    const long all   = sysconf(_SC_NPROCESSORS_ONLN);
+    const int  count = sched_getaffinity(0, sizeof ours, &ours) == 0 ? CPU_COUNT(&ours) : (int)all;
+    return count < 1 ? 1 : count < ASSAY_MAX_THREADS ? count : ASSAY_MAX_THREADS;
+}
+
 assay_status assay_context_create(const assay_context_options *options, assay_context **context_out)
 {
     assay_context_options o = {0};
@@ -52,13 +62,19 @@ assay_status assay_context_create(const assay_context_options *options, assay_co
         o.allocator = (assay_allocator){allocate_with_malloc, release_with_free, NULL};
     }
     if (o.threads == 0) {
-        o.threads = omp_get_num_procs();
+        o.threads = processor_count();
     }
-    assay_context *context = o.allocator.allocate(o.allocator.user, sizeof *context);
+    const size_t   helpers = (size_t)o.threads - 1;
+    assay_context *context = o.allocator.allocate(
+        o.allocator.user, sizeof *context + helpers * sizeof context->helpers[0]);
     if (!context) {
         return ASSAY_ERR_MEMORY;
     }
     memset(context, 0, sizeof *context);
+    if (!assay_thread_pool_open(&context->pool, context->helpers, (int)helpers)) {
+        o.allocator.release(o.allocator.user, context);
+        return ASSAY_ERR_MEMORY;
+    }
     if (o.memory_limit == 0) {
         o.memory_limit = assay_machine_memory_budget(assay_machine_memory(""));
     }
@@ -77,6 +93,7 @@ void assay_context_destroy(assay_context *context)
 {
     if (context) {
         const assay_allocator allocator = context->options.allocator;
+        assay_thread_pool_close(&context->pool);
         allocator.release(allocator.user, context);
     }
 }

@@ -1,4 +1,4 @@
-/* parallel.c - OpenMP loops that answer the same for any number of threads.
+/* parallel.c - loops that answer the same for any number of threads.
  *
  * Items are handed out one by one in index order, so when the loop stops at the first failing item
  * every lower index has been taken; the lowest failing index then names the result. */
@@ -6,10 +6,9 @@
 
 #include <fenv.h>
 #include <float.h>
-#include <omp.h>
 #include <stdatomic.h>
 
-#include "core/context.h"
+#include "core/context_data.h"
 
 /* Denormals must be kept and rounding be to nearest: some libraries leave other modes behind. */
 static bool float_environment_is_sound(void)
@@ -29,15 +28,28 @@ typedef struct {
     void                *user;
     atomic_uint_fast64_t next, done;
     atomic_bool          stop;
+    pthread_mutex_t      lock; /* of the lowest failure: */
+    uint64_t             failed_index;
+    assay_status         failed_status;
 } parallel_loop;
 
-/* Takes items until none is left or one failed; remembers its lowest failure. */
-static void work(parallel_loop *loop, int worker, uint64_t *failed_index,
-                 assay_status *failed_status)
+static void fail_at(parallel_loop *loop, uint64_t index, assay_status status)
 {
+    atomic_store(&loop->stop, true);
+    pthread_mutex_lock(&loop->lock);
+    if (loop->failed_status == ASSAY_OK || index < loop->failed_index) {
+        loop->failed_index  = index;
+        loop->failed_status = status;
+    }
+    pthread_mutex_unlock(&loop->lock);
+}
+
+/* Takes items until none is left or one failed. */
+static void work(void *user, int worker)
+{
+    parallel_loop *loop = user;
     if (!float_environment_is_sound()) {
-        *failed_index  = 0;
-        *failed_status = ASSAY_ERR_INTERNAL;
+        fail_at(loop, 0, ASSAY_ERR_INTERNAL);
         return;
     }
     while (!atomic_load_explicit(&loop->stop, memory_order_relaxed)) {
@@ -47,18 +59,14 @@ static void work(parallel_loop *loop, int worker, uint64_t *failed_index,
         }
         const assay_status status = loop->body(loop->user, index, worker);
         if (status != ASSAY_OK) {
-            *failed_index  = index;
-            *failed_status = status;
-            atomic_store(&loop->stop, true);
+            fail_at(loop, index, status);
             return;
         }
         const uint64_t done = atomic_fetch_add(&loop->done, 1) + 1;
         if (worker == 0 && loop->phase &&
             assay_progress(loop->context, loop->phase, loop->before + done, loop->total) !=
                 ASSAY_OK) {
-            *failed_index  = UINT64_MAX;
-            *failed_status = ASSAY_ERR_CANCELLED;
-            atomic_store(&loop->stop, true);
+            fail_at(loop, UINT64_MAX, ASSAY_ERR_CANCELLED);
             return;
         }
     }
@@ -74,33 +82,23 @@ assay_status assay_parallel_part(assay_context *context, const char *phase, uint
                                  uint64_t total, uint64_t count, assay_parallel_body body,
                                  void *user)
 {
-    parallel_loop loop   = {.context = context,
-                            .phase   = phase,
-                            .before  = before,
-                            .total   = total,
-                            .count   = count,
-                            .body    = body,
-                            .user    = user};
-    uint64_t      lowest = UINT64_MAX;
-    assay_status  result = ASSAY_OK;
-    /* The analyzer does not look into OpenMP's regions. NOLINTBEGIN(clang-analyzer-deadcode*) */
-    const int threads = count < (uint64_t)assay_context_threads(context)
-                            ? (int)count
-                            : assay_context_threads(context);
-#pragma omp parallel num_threads(threads > 0 ? threads : 1)
-    {
-        uint64_t     index  = UINT64_MAX;
-        assay_status status = ASSAY_OK;
-        work(&loop, omp_get_thread_num(), &index, &status);
-        if (status != ASSAY_OK) {
-#pragma omp critical(assay_parallel_failure)
-            if (result == ASSAY_OK || index < lowest) {
-                lowest = index;
-                result = status;
-            }
-        }
+    const uint64_t threads = (uint64_t)assay_context_threads(context);
+    parallel_loop  loop    = {.context = context,
+                              .phase   = phase,
+                              .before  = before,
+                              .total   = total,
+                              .count   = count,
+                              .body    = body,
+                              .user    = user};
+    if (pthread_mutex_init(&loop.lock, NULL) != 0) {
+        return ASSAY_ERR_MEMORY;
     }
-    /* NOLINTEND(clang-analyzer-deadcode*) */
+    if (count > 0) {
+        const uint64_t workers = count < threads ? count : threads;
+        assay_thread_pool_run(&context->pool, (int)workers - 1, work, &loop);
+    }
+    pthread_mutex_destroy(&loop.lock);
+    const assay_status result = loop.failed_status;
     if (result == ASSAY_ERR_INTERNAL) {
         return assay_fail(context, result,
                           "the floating-point environment flushes denormals or does not round to "

@@ -250,7 +250,10 @@ assay_status assay_render(assay_scene *scene, const char *method, const assay_pa
 {
     assay_sequence *sequence = NULL;
     assay_status    status   = assay_sequence_create(scene, method, params, &sequence);
-    status = status ? status : assay_sequence_render(sequence, options, true, image_out, stats_out);
+    if (!sequence) {
+        return status;
+    }
+    status = assay_sequence_render(sequence, options, true, image_out, stats_out);
     assay_sequence_destroy(sequence);
     return status;
 }

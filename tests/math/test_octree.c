@@ -9,32 +9,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/random.h"
 #include "math/octree.h"
 #include "support/failing_context.h"
+#include "support/random_places.h"
 
 enum { ITEMS = 2000, WALKS = 1000 };
 
 static const assay_vec3 LOW = {-1.0, 2.0, 3.0}, HIGH = {3.0, 5.0, 4.0};
-
-static int set_up(void **state)
-{
-    assay_context *context = NULL;
-    assert_int_equal(assay_context_create(NULL, &context), ASSAY_OK);
-    *state = context;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assay_context_destroy(*state);
-    return 0;
-}
-
-static double random_in(assay_random *random, double low, double high)
-{
-    return low + (high - low) * assay_random_next(random);
-}
 
 /* A place in the bounds, grown by a factor about their middle. */
 static assay_vec3 random_place(assay_random *random, double factor)
@@ -297,13 +278,15 @@ static void refused_memory_is_reported(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(walks_offer_what_reaches, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(borders_are_inside, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(walks_offer_what_is_near, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(shrunk_items_move_down, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(walks_offer_what_reaches, context_set_up,
+                                        context_tear_down),
+        cmocka_unit_test_setup_teardown(borders_are_inside, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(walks_offer_what_is_near, context_set_up,
+                                        context_tear_down),
+        cmocka_unit_test_setup_teardown(shrunk_items_move_down, context_set_up, context_tear_down),
         cmocka_unit_test(shrinking_without_memory),
-        cmocka_unit_test_setup_teardown(the_depth_is_bounded, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(strange_bounds, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(the_depth_is_bounded, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(strange_bounds, context_set_up, context_tear_down),
         cmocka_unit_test(refused_memory_is_reported)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

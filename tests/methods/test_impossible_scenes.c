@@ -29,13 +29,14 @@ static const char *const METHOD[METHODS] = {"irradiance-cache", "radiance-cache"
 static const setting GLOSSY[] = {
     {"order", "4"}, {"grid", "4"}, {"nodes", "8"}, {"glossy_accuracy", "0"}, {NULL, NULL}};
 
-enum { VARIANTS = 9, MOST = 4 };
+enum { VARIANTS = 10, MOST = 4 };
 static const setting VARIANT[VARIANTS][MOST] = {
     {{NULL, NULL}},
     {{"bounces", "2"}, {"secondary", "direct"}, {NULL, NULL}},
     {{"secondary", "cache"}, {"levels", "3"}, {NULL, NULL}},
     {{"weight", "tabellion"}, {"neighbour_clamp", "on"}, {NULL, NULL}},
     {{"in_front", "on"}, {"r_min_pixels", "2"}, {"r_max_pixels", "20"}, {NULL, NULL}},
+    {{"gradient_limit", "on"}, {"r_min_pixels", "1"}, {NULL, NULL}},
     {{"passes", "1"}, {"a", "0.000001"}, {"max_records", "9"}, {NULL, NULL}},
     {{"a", "1000"}, {"normal_gradient", "on"}, {"clamp_negative", "off"}, {NULL, NULL}},
     {{"max_records", "1"}, {NULL, NULL}},

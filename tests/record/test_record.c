@@ -9,9 +9,9 @@
 #include <math.h>
 
 #include "core/numerics.h"
-#include "core/random.h"
 #include "record/record.h"
 #include "support/near.h"
+#include "support/random_places.h"
 
 static const assay_vec3 ORIGIN = {0.0, 0.0, 0.0}, UP = {0.0, 0.0, 1.0};
 
@@ -20,28 +20,10 @@ static assay_record record_at(assay_vec3 position, assay_vec3 normal, double rad
     return (assay_record){.position = position, .normal = normal, .radius = radius};
 }
 
-static double random_in(assay_random *random, double low, double high)
-{
-    return low + (high - low) * assay_random_next(random);
-}
-
-static assay_vec3 random_vector(assay_random *random, double size)
-{
-    const double x = random_in(random, -size, size);
-    const double y = random_in(random, -size, size);
-    return vec3(x, y, random_in(random, -size, size));
-}
-
-/* A unit vector, not uniform. */
-static assay_vec3 random_unit(assay_random *random)
-{
-    return vec3_normalize(vec3_add(random_vector(random, 1.0), vec3(1e-3, 0.0, 0.0)));
-}
-
 /* A unit vector at about the angle to n, rad. */
 static assay_vec3 tilted(assay_random *random, assay_vec3 n, double angle)
 {
-    return vec3_normalize(vec3_add(n, random_vector(random, angle)));
+    return vec3_normalize(vec3_add(n, random_box(random, -angle, angle)));
 }
 
 static void ward_values(void **state)
@@ -138,14 +120,15 @@ static void weights_are_what_is_printed(void **state)
         const assay_record_rules rules = {.a = random_in(&random, 0.05, 1.5),
                                           .weight =
                                               i % 2 ? ASSAY_WEIGHT_WARD : ASSAY_WEIGHT_TABELLION};
-        const assay_record record   = record_at(random_vector(&random, 1.0), random_unit(&random),
-                                                random_in(&random, 0.1, 2.0));
-        const double       size     = rules.a * record.radius;
-        const assay_vec3   p        = vec3_add(record.position, random_vector(&random, 0.7 * size));
-        const assay_vec3   n        = tilted(&random, record.normal, random_in(&random, 0.01, 0.2));
-        const double       weight   = assay_record_weight(&record, &rules, p, n);
-        const double       expected = (double)literal_weight(&record, &rules, p, n);
-        const double       threshold = rules.weight == ASSAY_WEIGHT_WARD ? 1.0 / rules.a : 0.0;
+        const assay_record record = record_at(random_box(&random, -1.0, 1.0), random_unit(&random),
+                                              random_in(&random, 0.1, 2.0));
+        const double       size   = rules.a * record.radius;
+        const assay_vec3   p =
+            vec3_add(record.position, random_box(&random, -0.7 * size, 0.7 * size));
+        const assay_vec3 n         = tilted(&random, record.normal, random_in(&random, 0.01, 0.2));
+        const double     weight    = assay_record_weight(&record, &rules, p, n);
+        const double     expected  = (double)literal_weight(&record, &rules, p, n);
+        const double     threshold = rules.weight == ASSAY_WEIGHT_WARD ? 1.0 / rules.a : 0.0;
         if (fabs(expected - threshold) < 1e-9) {
             continue;
         }
@@ -167,7 +150,7 @@ static void nothing_counts_beyond_the_reach(void **state)
         const assay_record_rules rules  = {.a = random_in(&random, 0.01, 3.0),
                                            .weight =
                                               i % 2 ? ASSAY_WEIGHT_WARD : ASSAY_WEIGHT_TABELLION};
-        const assay_record       record = record_at(random_vector(&random, 10.0), UP,
+        const assay_record       record = record_at(random_box(&random, -10.0, 10.0), UP,
                                                     ldexp(random_in(&random, 0.5, 1.0), i % 60 - 30));
         const double             reach  = assay_record_reach(&record, &rules);
         const double             by     = rules.a * record.radius * (1.0 + (i % 9 - 4) * 0x1p-52);
@@ -243,16 +226,16 @@ static void extrapolation_follows_the_field(void **state)
     assay_random random = assay_random_start(10, ASSAY_STAGE_TEST, 0, 0);
     for (int i = 0; i < 2000; i++) {
         assay_vec3   g[3], v[3];
-        assay_record r = record_at(random_vector(&random, 2.0), random_unit(&random), 1.0);
+        assay_record r = record_at(random_box(&random, -2.0, 2.0), random_unit(&random), 1.0);
         for (int c = 0; c < 3; c++) {
-            g[c]             = random_vector(&random, 3.0);
-            v[c]             = random_vector(&random, 3.0);
+            g[c]             = random_box(&random, -3.0, 3.0);
+            v[c]             = random_box(&random, -3.0, 3.0);
             r.translation[c] = g[c];
             r.rotation[c]    = vec3_cross(r.normal, v[c]);
         }
         r.irradiance       = rgb(5.0 + vec3_dot(g[0], r.position), 6.0 + vec3_dot(g[1], r.position),
                                  7.0 + vec3_dot(g[2], r.position));
-        const assay_vec3 p = random_vector(&random, 2.0), n = random_unit(&random);
+        const assay_vec3 p = random_box(&random, -2.0, 2.0), n = random_unit(&random);
         for (int kind = 0; kind < 4; kind++) {
             const assay_record_rules rules = {.a = 1.0, .gradients = (assay_gradients)kind};
             const assay_rgb          e     = assay_record_extrapolate(&r, &rules, p, n);
@@ -276,10 +259,10 @@ static void at_home_a_record_says_what_it_holds(void **state)
     const assay_record_rules rules  = {.a = 1.0, .gradients = ASSAY_GRADIENTS_BOTH};
     assay_random             random = assay_random_start(11, ASSAY_STAGE_TEST, 0, 0);
     for (int i = 0; i < 1000; i++) {
-        assay_record r = record_at(random_vector(&random, 2.0), random_unit(&random), 1.0);
+        assay_record r = record_at(random_box(&random, -2.0, 2.0), random_unit(&random), 1.0);
         for (int c = 0; c < 3; c++) {
-            r.translation[c] = random_vector(&random, 1e6);
-            r.rotation[c]    = random_vector(&random, 1e6);
+            r.translation[c] = random_box(&random, -1e6, 1e6);
+            r.rotation[c]    = random_box(&random, -1e6, 1e6);
         }
         r.irradiance      = rgb(0.1, 0.0, 3e9);
         const assay_rgb e = assay_record_extrapolate(&r, &rules, r.position, r.normal);

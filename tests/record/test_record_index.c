@@ -8,41 +8,10 @@
 
 #include <string.h>
 
-#include "core/random.h"
 #include "record/record_store.h"
+#include "support/random_places.h"
 
 static const assay_vec3 ZERO = {0.0, 0.0, 0.0}, ONE = {1.0, 1.0, 1.0}, UP = {0.0, 0.0, 1.0};
-
-static int set_up(void **state)
-{
-    assay_context *context = NULL;
-    assert_int_equal(assay_context_create(NULL, &context), ASSAY_OK);
-    *state = context;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assay_context_destroy(*state);
-    return 0;
-}
-
-static double random_in(assay_random *random, double low, double high)
-{
-    return low + (high - low) * assay_random_next(random);
-}
-
-static assay_vec3 random_box(assay_random *random, double low, double high)
-{
-    const double x = random_in(random, low, high);
-    const double y = random_in(random, low, high);
-    return vec3(x, y, random_in(random, low, high));
-}
-
-static assay_vec3 random_unit(assay_random *random)
-{
-    return vec3_normalize(vec3_add(random_box(random, -1.0, 1.0), vec3(1e-3, 0.0, 0.0)));
-}
 
 static bool same_bits(const void *a, const void *b, size_t bytes)
 {
@@ -364,8 +333,11 @@ static void near_is_what_the_distance_says(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(octree_and_list_give_the_same_bits, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_miss_is_an_empty_set_for_small_a, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(near_is_what_the_distance_says, set_up, tear_down)};
+        cmocka_unit_test_setup_teardown(octree_and_list_give_the_same_bits, context_set_up,
+                                        context_tear_down),
+        cmocka_unit_test_setup_teardown(a_miss_is_an_empty_set_for_small_a, context_set_up,
+                                        context_tear_down),
+        cmocka_unit_test_setup_teardown(near_is_what_the_distance_says, context_set_up,
+                                        context_tear_down)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

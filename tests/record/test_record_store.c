@@ -8,38 +8,12 @@
 
 #include <string.h>
 
-#include "core/random.h"
 #include "record/record_store.h"
 #include "support/failing_context.h"
 #include "support/near.h"
+#include "support/random_places.h"
 
 static const assay_vec3 ZERO = {0.0, 0.0, 0.0}, ONE = {1.0, 1.0, 1.0}, UP = {0.0, 0.0, 1.0};
-
-static int set_up(void **state)
-{
-    assay_context *context = NULL;
-    assert_int_equal(assay_context_create(NULL, &context), ASSAY_OK);
-    *state = context;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assay_context_destroy(*state);
-    return 0;
-}
-
-static double random_in(assay_random *random, double low, double high)
-{
-    return low + (high - low) * assay_random_next(random);
-}
-
-static assay_vec3 random_box(assay_random *random, double low, double high)
-{
-    const double x = random_in(random, low, high);
-    const double y = random_in(random, low, high);
-    return vec3(x, y, random_in(random, low, high));
-}
 
 static bool same_bits(const void *a, const void *b, size_t bytes)
 {
@@ -316,13 +290,17 @@ static void refused_memory_is_reported(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(sums_run_by_number, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(interpolation_by_hand, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(constants_stay_what_they_are, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_large_a_can_need_several, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(unsound_records_are_refused, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(bad_accuracies_are_refused, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(extreme_numbers, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(sums_run_by_number, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(interpolation_by_hand, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(constants_stay_what_they_are, context_set_up,
+                                        context_tear_down),
+        cmocka_unit_test_setup_teardown(a_large_a_can_need_several, context_set_up,
+                                        context_tear_down),
+        cmocka_unit_test_setup_teardown(unsound_records_are_refused, context_set_up,
+                                        context_tear_down),
+        cmocka_unit_test_setup_teardown(bad_accuracies_are_refused, context_set_up,
+                                        context_tear_down),
+        cmocka_unit_test_setup_teardown(extreme_numbers, context_set_up, context_tear_down),
         cmocka_unit_test(refused_memory_is_reported)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,7 +6,7 @@ set -eu
 base=$PWD/build/arm64
 root=$base/root
 packages="libembree-dev libopenexr-dev libtinygltf-dev libsleef-dev librandom123-dev libpng-dev
-          libjpeg-dev libcjson-dev libmd-dev libc6-dev libgomp1 libstdc++-12-dev"
+          libjpeg-dev libcjson-dev libmd-dev libc6-dev libstdc++-12-dev"
 
 missing=
 for p in gcc-aarch64-linux-gnu g++-aarch64-linux-gnu qemu-user; do
@@ -49,7 +49,7 @@ lib=$root/usr/lib/aarch64-linux-gnu
 echo "arm64: building"
 make -s -j"$(nproc)" BUILD=build/arm64/build CC=aarch64-linux-gnu-gcc CXX=aarch64-linux-gnu-g++ \
     AR=aarch64-linux-gnu-ar CPPFLAGS="-idirafter $root/usr/include -idirafter $root/usr/include/aarch64-linux-gnu" \
-    LDFLAGS="-L$lib -Wl,-rpath-link,$lib:$root/lib/aarch64-linux-gnu:$lib/blas:$lib/lapack -fopenmp" all
+    LDFLAGS="-L$lib -Wl,-rpath-link,$lib:$root/lib/aarch64-linux-gnu:$lib/blas:$lib/lapack -pthread" all
 [ -x build/release/assay ] || make -s -j"$(nproc)" all
 
 echo "arm64: comparing"
