@@ -7,6 +7,7 @@
 
 #include "core/alloc.h"
 #include "core/context.h"
+#include "core/numerics.h"
 #include "core/parallel.h"
 #include "math/sobol.h"
 #include "trace/camera_ray.h"
@@ -57,6 +58,32 @@ assay_rgb assay_cached_point_lambert(const assay_cached_point *point)
 {
     const assay_bsdf_view view = assay_bsdf_seen_from(&point->vertex.bsdf, point->vertex.wo_local);
     return assay_bsdf_view_lambert(&view);
+}
+
+static assay_rgb not_negative(assay_rgb c)
+{
+    return rgb(c.r > 0.0 ? c.r : 0.0, c.g > 0.0 ? c.g : 0.0, c.b > 0.0 ? c.b : 0.0);
+}
+
+assay_rgb assay_cached_point_sum(assay_rgb lambert, assay_rgb irradiance, const assay_rgb *gloss,
+                                 bool clamp)
+{
+    const assay_rgb diffuse = rgb_scale(rgb_mul(irradiance, lambert), ASSAY_INV_PI);
+    if (!gloss) {
+        return diffuse;
+    }
+    const assay_rgb sum = rgb_add(diffuse, *gloss);
+    return clamp ? not_negative(sum) : sum;
+}
+
+assay_rgb assay_cached_point_rest(const assay_world *world, const assay_path_settings *path,
+                                  const assay_cached_point *point, assay_random *random,
+                                  assay_ray_counts *counts)
+{
+    return point->vertex.bsdf.model == ASSAY_BSDF_LAMBERT
+               ? rgb_grey(0.0)
+               : assay_path_indirect(world, path, &point->vertex, assay_cached_point_lambert(point),
+                                     random, counts);
 }
 
 /* ---- the order ---- */

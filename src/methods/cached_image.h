@@ -26,6 +26,17 @@ typedef struct {
 /* Albedo of the Lambertian part that the point shows (assay_bsdf_view_lambert). */
 assay_rgb assay_cached_point_lambert(const assay_cached_point *point);
 
+/* What the caches say of the light towards the point's wo: lambert / pi times the indirect
+ * irradiance, and what the rest of its BSDF reflects, or NULL where that is none of theirs.  clamp:
+ * truncated harmonics ring; a sum with them that is below 0 counts as 0. */
+assay_rgb assay_cached_point_sum(assay_rgb lambert, assay_rgb irradiance, const assay_rgb *gloss,
+                                 bool clamp);
+
+/* One path for that rest; black for a Lambertian. */
+assay_rgb assay_cached_point_rest(const assay_world *world, const assay_path_settings *path,
+                                  const assay_cached_point *point, assay_random *random,
+                                  assay_ray_counts *counts);
+
 typedef struct {
     void *user;
     /* Makes the caches know enough at the points, in their order; limits_out: what had been made

@@ -11,31 +11,20 @@
 #include "core/random.h"
 #include "math/frame.h"
 #include "record/splat_bounds.h"
+#include "support/random_places.h"
 #include "trace/camera_ray.h"
 
 enum { WIDTH = 120, HEIGHT = 90 };
-
-static double random_in(assay_random *random, double low, double high)
-{
-    return low + (high - low) * assay_random_next(random);
-}
-
-static assay_vec3 random_box(assay_random *random, double size)
-{
-    const double x = random_in(random, -size, size);
-    const double y = random_in(random, -size, size);
-    return vec3(x, y, random_in(random, -size, size));
-}
 
 /* Far from the origin at times, so that subtraction from the eye rounds. */
 static assay_camera random_camera(assay_random *random)
 {
     const double       far  = assay_random_next(random) < 0.3 ? 1000.0 : 1.0;
-    const assay_vec3   n    = vec3_normalize(vec3_add(random_box(random, 1.0), vec3(1e-3, 0, 0)));
+    const assay_vec3   n    = random_unit(random);
     const assay_frame3 f    = frame3_from_z(n);
     const double       half = random_in(random, 0.05, 1.5);
     const double       size = random_in(random, 0.2, 3.0);
-    return (assay_camera){.position      = random_box(random, far),
+    return (assay_camera){.position      = random_box(random, -far, far),
                           .right         = f.x,
                           .up            = f.y,
                           .forward       = vec3_negate(f.z),
@@ -65,8 +54,7 @@ static assay_vec3 random_centre(assay_random *random, assay_vec3 point, double d
     const double radius = distance * assay_exp(random_in(random, -6.0, 2.0));
     const double part   = assay_random_next(random) < 0.7 ? 1.0 : assay_random_next(random);
     *radius_out         = radius;
-    return vec3_mad(point, radius * part,
-                    vec3_normalize(vec3_add(random_box(random, 1.0), vec3(1e-3, 0, 0))));
+    return vec3_mad(point, radius * part, random_unit(random));
 }
 
 /* A million of spheres and points in them, for centres of pixels and for places within pixels. */

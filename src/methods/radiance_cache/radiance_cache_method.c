@@ -245,11 +245,6 @@ static assay_status gloss(const cache_state *s, const assay_material_grids *grid
                                                                 d->light, d->scratch, gloss_out);
 }
 
-static assay_rgb not_negative(assay_rgb c)
-{
-    return rgb(c.r > 0.0 ? c.r : 0.0, c.g > 0.0 ? c.g : 0.0, c.b > 0.0 ? c.b : 0.0);
-}
-
 /* What the caches say of the light towards the viewer; *found_out false, and the Lambertian's share
  * alone, where the rest of it is none of theirs. */
 static assay_status cached_radiance(const cache_state *s, const assay_cached_point *point,
@@ -259,19 +254,18 @@ static assay_status cached_radiance(const cache_state *s, const assay_cached_poi
     const made_so_far           made    = made_within(s, limit);
     const assay_material_grids *grids   = grids_at(s, point);
     const assay_rgb             lambert = assay_cached_point_lambert(point);
-    assay_rgb                   sum = rgb_grey(0.0), rest = rgb_grey(0.0);
+    const bool                  clamp   = s->settings.records.rules.clamp_negative;
+    assay_rgb                   e = rgb_grey(0.0), rest = rgb_grey(0.0);
     assay_status                status = ASSAY_OK;
     bool                        found  = false;
     if (!rgb_is_black(lambert)) {
-        status = irradiance_within(s, point, made.irradiance, worker, &sum);
-        sum    = rgb_scale(rgb_mul(sum, lambert), ASSAY_INV_PI);
+        status = irradiance_within(s, point, made.irradiance, worker, &e);
     }
     if (grids && status == ASSAY_OK) {
         status = gloss(s, grids, point, made.radiance, worker, &rest, &found);
     }
     if (status == ASSAY_OK) {
-        sum           = rgb_add(sum, rest);
-        *radiance_out = found && s->settings.records.rules.clamp_negative ? not_negative(sum) : sum;
+        *radiance_out = assay_cached_point_sum(lambert, e, found ? &rest : NULL, clamp);
         *found_out    = found;
     }
     return status;
@@ -288,10 +282,9 @@ static assay_status radiance(void *user, const assay_cached_point *point, uint32
     if (status != ASSAY_OK) {
         return status;
     }
-    if (!found && point->vertex.bsdf.model != ASSAY_BSDF_LAMBERT) {
-        const assay_rgb lambert = assay_cached_point_lambert(point);
-        sum = rgb_add(sum, assay_path_indirect(s->world, &s->settings.records.path, &point->vertex,
-                                               lambert, random, counts));
+    if (!found) {
+        sum = rgb_add(sum, assay_cached_point_rest(s->world, &s->settings.records.path, point,
+                                                   random, counts));
     }
     *radiance_out = sum;
     return ASSAY_OK;

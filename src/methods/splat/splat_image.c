@@ -198,11 +198,6 @@ static assay_status irradiance(void *user, const assay_cached_point *point, uint
     return irradiance_at(user, point->pixel, worker, irradiance_out);
 }
 
-static assay_rgb not_negative(assay_rgb c)
-{
-    return rgb(c.r > 0.0 ? c.r : 0.0, c.g > 0.0 ? c.g : 0.0, c.b > 0.0 ? c.b : 0.0);
-}
-
 /* The normalised splat buffers; *found_out: glossy light is among it. */
 static assay_status splatted(const splat_image *image, const assay_cached_point *point, int worker,
                              assay_rgb *radiance_out, bool *found_out)
@@ -210,18 +205,13 @@ static assay_status splatted(const splat_image *image, const assay_cached_point 
     const size_t    pixel   = point->pixel;
     const bool      found   = image->gloss && assay_splat_weight(image->glossy.buffer, pixel) > 0.0;
     const assay_rgb lambert = image->lambert[pixel];
-    assay_rgb       sum     = rgb_grey(0.0);
-    assay_status    status  = ASSAY_OK;
-    if (!rgb_is_black(lambert)) {
-        status = irradiance_at(image, pixel, worker, &sum);
-        sum    = rgb_scale(rgb_mul(sum, lambert), ASSAY_INV_PI);
-    }
-    if (found) {
-        sum = rgb_add(sum, assay_splat_mean(image->glossy.buffer, pixel));
-        sum = image->diffuse.source.rules.clamp_negative ? not_negative(sum) : sum;
-    }
+    const assay_rgb gloss   = found ? assay_splat_mean(image->glossy.buffer, pixel) : rgb_grey(0.0);
+    assay_rgb       e       = rgb_grey(0.0);
+    const assay_status status =
+        rgb_is_black(lambert) ? ASSAY_OK : irradiance_at(image, pixel, worker, &e);
     if (status == ASSAY_OK) {
-        *radiance_out = sum;
+        *radiance_out = assay_cached_point_sum(lambert, e, found ? &gloss : NULL,
+                                               image->diffuse.source.rules.clamp_negative);
         *found_out    = found;
     }
     return status;
@@ -239,9 +229,9 @@ static assay_status radiance(void *user, const assay_cached_point *point, uint32
     if (status != ASSAY_OK) {
         return status;
     }
-    if (!found && point->vertex.bsdf.model != ASSAY_BSDF_LAMBERT) {
-        sum = rgb_add(sum, assay_path_indirect(image->frame->world, image->path, &point->vertex,
-                                               assay_cached_point_lambert(point), random, counts));
+    if (!found) {
+        sum = rgb_add(
+            sum, assay_cached_point_rest(image->frame->world, image->path, point, random, counts));
     }
     *radiance_out = sum;
     return ASSAY_OK;
