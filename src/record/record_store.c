@@ -336,7 +336,9 @@ static assay_status answer(const question *q, size_t limit, assay_contributions 
         status = consider_neighbours(q, end, list, &found);
     } else {
         status = (q->store->octree ? consider_near : consider_each)(q, end, list, &found);
-        sort_by_number(list->items + list->count, found);
+        if (found > 0) {
+            sort_by_number(list->items + list->count, found);
+        }
     }
     if (status != ASSAY_OK) {
         return status;
