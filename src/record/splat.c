@@ -6,8 +6,7 @@
  *
  * A box only leaves out; what counts is decided by assay_record_weight, after a test of the
  * distance over a whole row of the tile, which is the same as its first one and which compilers do
- * to several pixels at once.  A pixel without a point has NaN for a position, which no record
- * reaches. */
+ * to several pixels at once. */
 #include "record/splat.h"
 
 #include <assert.h>
@@ -15,136 +14,10 @@
 
 #include "core/alloc.h"
 #include "core/parallel.h"
+#include "record/record_inline.h"
+#include "record/splat_data.h"
 
-enum { TILE = ASSAY_SPLAT_TILE, ROW_CHUNK = 16, FEW_PIXELS = 1 << 14 };
-
-struct assay_splat_buffer {
-    assay_context   *context;
-    int              width, height, columns, rows; /* pixels; tiles                        */
-    size_t           pixels;
-    assay_splat_view view;
-    double          *x, *y, *z;    /* positions, m                                      */
-    double          *nx, *ny, *nz; /* unit normals                                      */
-    double          *row_stray;    /* a row: how far its points stray, pixels           */
-    double          *sums;         /* 4 a pixel: weight times R, G, B, and weight       */
-    uint64_t        *lost;         /* a tile                                            */
-};
-
-void assay_splat_buffer_destroy(assay_splat_buffer *buffer)
-{
-    if (buffer) {
-        double *const blocks[] = {buffer->x,  buffer->y,  buffer->z,         buffer->nx,
-                                  buffer->ny, buffer->nz, buffer->row_stray, buffer->sums};
-        for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; i++) {
-            assay_release(buffer->context, blocks[i]);
-        }
-        assay_release(buffer->context, buffer->lost);
-        assay_release(buffer->context, buffer);
-    }
-}
-
-static bool allocate(assay_splat_buffer *b)
-{
-    double **const points[] = {&b->x, &b->y, &b->z, &b->nx, &b->ny, &b->nz};
-    bool           have     = true;
-    for (size_t i = 0; i < sizeof points / sizeof points[0]; i++) {
-        *points[i] = assay_allocate(b->context, b->pixels, sizeof(double));
-        have       = have && *points[i];
-    }
-    b->row_stray = assay_allocate(b->context, (size_t)b->height, sizeof(double));
-    b->sums      = assay_allocate(b->context, b->pixels, 4 * sizeof(double));
-    b->lost = assay_allocate(b->context, (size_t)b->columns * (size_t)b->rows, sizeof *b->lost);
-    return have && b->row_stray && b->sums && b->lost;
-}
-
-assay_status assay_splat_buffer_create(assay_context *context, int width, int height,
-                                       assay_splat_buffer **buffer_out)
-{
-    assay_splat_buffer *buffer = assay_allocate(context, 1, sizeof *buffer);
-    if (!buffer) {
-        return assay_fail_memory(context, "a splat buffer");
-    }
-    buffer->context = context;
-    buffer->width   = width;
-    buffer->height  = height;
-    buffer->columns = (width + TILE - 1) / TILE;
-    buffer->rows    = (height + TILE - 1) / TILE;
-    buffer->pixels  = (size_t)width * (size_t)height;
-    if (!allocate(buffer)) {
-        assay_splat_buffer_destroy(buffer);
-        return assay_fail_memory(context, "a splat buffer");
-    }
-    *buffer_out = buffer;
-    return ASSAY_OK;
-}
-
-/* ---- points ---- */
-
-void assay_splat_buffer_look(assay_splat_buffer *buffer, const assay_camera *camera)
-{
-    buffer->view = assay_splat_view_of(camera, buffer->width, buffer->height);
-    for (size_t i = 0; i < buffer->pixels; i++) {
-        buffer->x[i] = NAN;
-    }
-}
-
-void assay_splat_buffer_set(assay_splat_buffer *buffer, size_t pixel, assay_vec3 position,
-                            assay_vec3 normal)
-{
-    assert(pixel < buffer->pixels);
-    buffer->x[pixel]  = position.x;
-    buffer->y[pixel]  = position.y;
-    buffer->z[pixel]  = position.z;
-    buffer->nx[pixel] = normal.x;
-    buffer->ny[pixel] = normal.y;
-    buffer->nz[pixel] = normal.z;
-}
-
-bool assay_splat_has_point(const assay_splat_buffer *buffer, size_t pixel)
-{
-    return !isnan(buffer->x[pixel]);
-}
-
-assay_context *assay_splat_context(const assay_splat_buffer *buffer) { return buffer->context; }
-
-static assay_vec3 position_of(const assay_splat_buffer *buffer, size_t pixel)
-{
-    return vec3(buffer->x[pixel], buffer->y[pixel], buffer->z[pixel]);
-}
-
-static assay_status measure_rows(void *user, uint64_t chunk, int worker)
-{
-    assay_splat_buffer *buffer = user;
-    const int           first  = (int)chunk * ROW_CHUNK;
-    (void)worker;
-    for (int y = first; y < first + ROW_CHUNK && y < buffer->height; y++) {
-        buffer->row_stray[y] = 0.0;
-        for (int x = 0; x < buffer->width; x++) {
-            const size_t pixel = (size_t)y * (size_t)buffer->width + (size_t)x;
-            if (assay_splat_has_point(buffer, pixel)) {
-                buffer->row_stray[y] =
-                    fmax(buffer->row_stray[y],
-                         assay_splat_stray(&buffer->view, x, y, position_of(buffer, pixel)));
-            }
-        }
-    }
-    return ASSAY_OK;
-}
-
-assay_status assay_splat_buffer_close(assay_splat_buffer *buffer)
-{
-    const uint64_t     chunks = ((uint64_t)buffer->height + ROW_CHUNK - 1) / ROW_CHUNK;
-    const assay_status status =
-        assay_parallel_for(buffer->context, NULL, chunks, measure_rows, buffer);
-    buffer->view.stray = 0.0;
-    for (int y = 0; y < buffer->height; y++) {
-        buffer->view.stray = fmax(buffer->view.stray, buffer->row_stray[y]);
-    }
-    assay_splat_buffer_clear(buffer);
-    return status;
-}
-
-/* ---- splatting ---- */
+enum { TILE = ASSAY_SPLAT_TILE, FEW_PIXELS = 1 << 14 };
 
 typedef struct {
     assay_splat_buffer       *buffer;
@@ -179,12 +52,20 @@ typedef struct {
     uint64_t              *lost;
 } splat;
 
+static void add(double *sum, double weight, assay_rgb said)
+{
+    sum[0] += weight * said.r;
+    sum[1] += weight * said.g;
+    sum[2] += weight * said.b;
+    sum[3] += weight;
+}
+
 static assay_status splat_pixel(const splat *s, int x, int y, size_t pixel)
 {
     const assay_splat_source *source = s->job->source;
     assay_splat_buffer       *buffer = s->job->buffer;
-    const assay_vec3          p      = position_of(buffer, pixel);
-    const assay_vec3          n = vec3(buffer->nx[pixel], buffer->ny[pixel], buffer->nz[pixel]);
+    const assay_vec3          p      = splat_position(buffer, pixel);
+    const assay_vec3          n      = splat_normal(buffer, pixel);
     const double              weight = assay_record_weight(s->record, &source->rules, p, n);
     double                   *sum    = &buffer->sums[4 * pixel];
     assay_rgb                 said;
@@ -208,29 +89,37 @@ static assay_status splat_pixel(const splat *s, int x, int y, size_t pixel)
     } else {
         said = assay_record_extrapolate(s->record, &source->rules, p, n);
     }
-    sum[0] += weight * said.r;
-    sum[1] += weight * said.g;
-    sum[2] += weight * said.b;
-    sum[3] += weight;
+    add(sum, weight, said);
     return ASSAY_OK;
+}
+
+/* Squared distances of a row's points. */
+static void measure_row(const assay_splat_buffer *buffer, assay_vec3 centre, size_t first,
+                        int count, double squared[TILE])
+{
+    const double *x = buffer->x + first, *y = buffer->y + first, *z = buffer->z + first;
+    for (int i = 0; i < count; i++) {
+        const double dx = x[i] - centre.x, dy = y[i] - centre.y, dz = z[i] - centre.z;
+        squared[i] = dx * dx + dy * dy + dz * dz;
+    }
+}
+
+static size_t pixel_at(const assay_splat_buffer *buffer, int x, int y)
+{
+    return (size_t)y * (size_t)buffer->width + (size_t)x;
 }
 
 static assay_status splat_part(const splat *s, const assay_splat_box *part)
 {
     const assay_splat_buffer *buffer = s->job->buffer;
-    const assay_vec3          centre = s->record->position;
     const double              reach  = assay_record_reach(s->record, &s->job->source->rules);
     const double              most   = reach * reach;
     const int                 count  = part->x1 - part->x0;
     assay_status              status = ASSAY_OK;
     for (int y = part->y0; y < part->y1 && status == ASSAY_OK; y++) {
-        const size_t  first = (size_t)y * (size_t)buffer->width + (size_t)part->x0;
-        const double *px = buffer->x + first, *py = buffer->y + first, *pz = buffer->z + first;
-        double        squared[TILE];
-        for (int i = 0; i < count; i++) {
-            const double dx = px[i] - centre.x, dy = py[i] - centre.y, dz = pz[i] - centre.z;
-            squared[i] = dx * dx + dy * dy + dz * dz;
-        }
+        const size_t first = pixel_at(buffer, part->x0, y);
+        double       squared[TILE];
+        measure_row(buffer, s->record->position, first, count, squared);
         for (int i = 0; i < count && status == ASSAY_OK; i++) {
             if (squared[i] <= most) {
                 status = splat_pixel(s, part->x0 + i, y, first + (size_t)i);
@@ -238,6 +127,35 @@ static assay_status splat_part(const splat *s, const assay_splat_box *part)
         }
     }
     return status;
+}
+
+/* The same for irradiance in exact bounds.  Copies of record and rules, as no sum can then be among
+ * them: what does not depend on the pixel leaves the loop. */
+static void splat_part_of_irradiance(const splat *s, const assay_splat_box *part)
+{
+    const assay_splat_buffer *buffer = s->job->buffer;
+    const assay_record        record = *s->record;
+    const assay_record_rules  rules  = s->job->source->rules;
+    const double              reach  = record_reach(&record, &rules);
+    const double              most   = reach * reach;
+    const int                 count  = part->x1 - part->x0;
+    for (int y = part->y0; y < part->y1; y++) {
+        const size_t first = pixel_at(buffer, part->x0, y);
+        double       squared[TILE];
+        measure_row(buffer, record.position, first, count, squared);
+        for (int i = 0; i < count; i++) {
+            const size_t pixel = first + (size_t)i;
+            if (squared[i] <= most) {
+                const assay_vec3 p      = splat_position(buffer, pixel);
+                const assay_vec3 n      = splat_normal(buffer, pixel);
+                const double     weight = record_weight(&record, &rules, p, n);
+                if (weight > 0.0) {
+                    add(&buffer->sums[4 * pixel], weight,
+                        record_extrapolate(&record, &rules, p, n));
+                }
+            }
+        }
+    }
 }
 
 static assay_status splat_record(const splat_job *job, uint32_t number, const assay_splat_box *tile,
@@ -261,7 +179,11 @@ static assay_status splat_record(const splat_job *job, uint32_t number, const as
                                             job->source->rules.a * record->radius);
         s.billboard = &billboard;
     }
-    return splat_part(&s, &part);
+    if (s.billboard || job->source->say) {
+        return splat_part(&s, &part);
+    }
+    splat_part_of_irradiance(&s, &part);
+    return ASSAY_OK;
 }
 
 static assay_status splat_tile(void *user, uint64_t index, int worker)
@@ -387,41 +309,4 @@ assay_status assay_splat_records(assay_splat_buffer *buffer, const assay_splat_s
         return ASSAY_OK;
     }
     return end - first == 1 ? splat_one(&job) : splat_many(&job, end - first);
-}
-
-/* ---- sums ---- */
-
-void assay_splat_buffer_clear(assay_splat_buffer *buffer)
-{
-    const size_t tiles = (size_t)buffer->columns * (size_t)buffer->rows;
-    memset(buffer->sums, 0, buffer->pixels * 4 * sizeof *buffer->sums);
-    memset(buffer->lost, 0, tiles * sizeof *buffer->lost);
-}
-
-double assay_splat_weight(const assay_splat_buffer *buffer, size_t pixel)
-{
-    return buffer->sums[4 * pixel + 3];
-}
-
-assay_rgb assay_splat_sum(const assay_splat_buffer *buffer, size_t pixel)
-{
-    const double *sum = &buffer->sums[4 * pixel];
-    return rgb(sum[0], sum[1], sum[2]);
-}
-
-assay_rgb assay_splat_mean(const assay_splat_buffer *buffer, size_t pixel)
-{
-    const double    weight = assay_splat_weight(buffer, pixel);
-    const assay_rgb sum    = assay_splat_sum(buffer, pixel);
-    return weight > 0.0 ? rgb(sum.r / weight, sum.g / weight, sum.b / weight) : rgb_grey(0.0);
-}
-
-uint64_t assay_splat_lost(const assay_splat_buffer *buffer)
-{
-    uint64_t     sum   = 0;
-    const size_t tiles = (size_t)buffer->columns * (size_t)buffer->rows;
-    for (size_t i = 0; i < tiles; i++) {
-        sum += buffer->lost[i];
-    }
-    return sum;
 }
