@@ -336,14 +336,14 @@ static assay_status answer(const question *q, size_t limit, assay_contributions 
         status = consider_neighbours(q, end, list, &found);
     } else {
         status = (q->store->octree ? consider_near : consider_each)(q, end, list, &found);
-        if (found > 0) {
-            sort_by_number(list->items + list->count, found);
-        }
     }
     if (status != ASSAY_OK) {
         return status;
     }
     if (found > 0) {
+        if (!known) {
+            sort_by_number(list->items + list->count, found);
+        }
         memmove(list->items, list->items + list->count, found * sizeof *list->items);
     }
     list->count    = found;

@@ -15,9 +15,9 @@
 
 #include "assay/render.h"
 
-enum { SIDE = 48, CHANNELS = 3, ACCURACIES = 4, COLUMNS = 4 };
+enum { SIDE = 48, CHANNELS = 3, ACCURACIES = 5, COLUMNS = 4 };
 
-static const char *const ACCURACY[ACCURACIES] = {"0.4", "0.2", "0.1", "0.05"};
+static const char *const ACCURACY[ACCURACIES] = {"0.4", "0.2", "0.15", "0.1", "0.05"};
 
 static const struct {
     const char *theta, *phi, *gradient_limit;
@@ -36,17 +36,19 @@ typedef struct {
 #define CORNELL "scenes/cornell-box/cornell-box.gltf"
 #define GLOSSY "scenes/cornell-box-glossy/cornell-box-glossy.gltf"
 #define SPONZA "sponza_dabrovic/sponza_dabrovic.glb"
-#define ROOM "bitterli_classroom/bitterli_classroom.glb"
+#define KITCHEN "lux_kitchen/lux_kitchen.glb"
 
 static const table TABLES[] = {
     {"Cornell box", "irradiance-cache", CORNELL, NULL, "inf", "1024", "IrradianceIndirect", -1,
      true},
     {"Cornell box", "irradiance-cache", CORNELL, NULL, "inf", "1024", "Indirect", -1, true},
+    {"Cornell box, one bounce", "irradiance-cache", CORNELL, NULL, "2", "1024",
+     "IrradianceIndirect", -1, true},
     {"Sponza, atrium", "irradiance-cache", SPONZA, "atrium", "inf", "1024", "IrradianceIndirect",
      -1, true},
     {"Sponza, atrium", "irradiance-cache", SPONZA, "atrium", "inf", "1024", "Indirect", -1, true},
-    {"Classroom", "irradiance-cache", ROOM, NULL, "inf", "1024", "IrradianceIndirect", -1, true},
-    {"Classroom", "irradiance-cache", ROOM, NULL, "inf", "1024", "Indirect", -1, true},
+    {"Kitchen", "irradiance-cache", KITCHEN, NULL, "inf", "1024", "IrradianceIndirect", -1, true},
+    {"Kitchen", "irradiance-cache", KITCHEN, NULL, "inf", "1024", "Indirect", -1, true},
     {"Glossy box, its wall", "radiance-cache", GLOSSY, NULL, "inf", "2048", "Indirect", 4, false},
     {"Glossy box, all of it", "radiance-cache", GLOSSY, NULL, "inf", "2048", "Indirect", -1, false},
 };
@@ -176,7 +178,8 @@ static verdict judge(const study *s, const table *about, const assay_image *imag
 
 static bool same_scene(const table *a, const table *b)
 {
-    return strcmp(a->scene, b->scene) == 0 && strcmp(a->method, b->method) == 0;
+    return strcmp(a->scene, b->scene) == 0 && strcmp(a->method, b->method) == 0 &&
+           strcmp(a->bounces, b->bounces) == 0;
 }
 
 static bool open_study(study *s)
@@ -224,7 +227,7 @@ static void print_table(const study *s, const table *about, assay_image *const i
     fflush(stdout);
 }
 
-/* All tables of the first one's scene and method. */
+/* All tables of the first one's scene, method and bounces. */
 static void work_on(study *s, const table *first, const char *wanted)
 {
     assay_image *images[ACCURACIES][COLUMNS]  = {{NULL}};
