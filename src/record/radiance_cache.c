@@ -118,11 +118,13 @@ static assay_status create_parts(assay_radiance_cache *cache, assay_irradiance_c
     if (!cache->scratch) {
         return assay_fail_memory(cache->context, "the radiance cache");
     }
+    assay_record_rules widest                  = s->records.rules;
+    widest.a                                   = s->widest_a > widest.a ? s->widest_a : widest.a;
     const assay_radiance_turn_settings turning = {
         .way      = s->rotation,
         .steps    = s->rotation_steps,
         .sh_order = s->sh_order,
-        .tilt_max = assay_record_tilt_max(&s->records.rules),
+        .tilt_max = assay_record_tilt_max(&widest),
     };
     status = assay_irradiance_cache_create_beside(beside, &s->records, &companion, &cache->records);
     return status ? status

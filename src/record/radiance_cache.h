@@ -23,7 +23,8 @@ typedef struct {
     assay_hsh_rotation_way          rotation;
     int rotation_steps; /* TABLE, DIGON: intervals up to the largest tilt at which a record counts
                          */
-    int sh_order; /* CONVERSION: of the SH between                                           */
+    int    sh_order; /* CONVERSION: of the SH between                                           */
+    double widest_a; /* turns serve records that count at this a, if it is more than theirs   */
 } assay_radiance_cache_settings;
 
 typedef struct assay_radiance_cache assay_radiance_cache;

@@ -74,6 +74,7 @@ static void read_own_params(const assay_params *params, splat_state *s)
     s->image.uncovered        = (splat_uncovered)assay_params_choice(params, "uncovered");
     s->image.centres          = assay_params_choice(params, "gbuffer") == 1;
     s->image_settings.centres = s->image.centres;
+    s->settings.widest_a      = assay_params_real(params, "splat_a");
     s->image.rules            = (splat_rules){
                    .variant     = (splat_variant)assay_params_choice(params, "variant"),
                    .bounds      = (assay_splat_bounds_kind)assay_params_choice(params, "bounds"),
