@@ -244,6 +244,17 @@ static void camera_walks(void **state)
     check_chain("splat", few);
     check_chain("splat", printed);
     check_chain("splat", clamped);
+    assay_context *context = measure_context(2);
+    assay_scene   *scene   = room(context, MOVES_CAMERA);
+    outcome        frames[FRAMES];
+    render_sequence(context, scene, "splat", few, NO_SEEDS, frames);
+    for (int k = 0; k < FRAMES; k++) {
+        /* Of irradiance and of radiance. */
+        assert_true(frames[k].stats.records <= (uint64_t)(k + 1) * 2 * 12);
+        assert_true(k == 0 || frames[k].stats.records > frames[k - 1].stats.records);
+    }
+    assay_scene_destroy(scene);
+    assay_context_destroy(context);
 }
 
 /* ---- something else that moves ---- */
