@@ -1,6 +1,8 @@
 /* cache_params.c - from parameters to the settings of caches. */
 #include "methods/cache_params.h"
 
+#include <string.h>
+
 #include "core/context.h"
 
 /* 0 stands for no limit. */
@@ -60,6 +62,15 @@ static assay_status check_shadow(assay_context *context, const assay_params *par
     return ASSAY_OK;
 }
 
+static int passes_of(const assay_params *params)
+{
+    const assay_param_desc *row = assay_params_table(params);
+    while (row->name && strcmp(row->name, "passes") != 0) {
+        row++;
+    }
+    return row->name ? assay_params_int(params, "passes") : 2;
+}
+
 assay_status assay_cache_params_read(assay_context *context, const assay_params *params,
                                      assay_irradiance_cache_settings *cache_out,
                                      assay_cached_image_settings     *image_out)
@@ -100,7 +111,7 @@ assay_status assay_cache_params_read(assay_context *context, const assay_params 
         .path   = path,
         .spp    = (uint32_t)assay_params_int(params, "spp"),
         .order  = (assay_pixel_order)assay_params_choice(params, "traversal"),
-        .passes = assay_params_int(params, "passes"),
+        .passes = passes_of(params),
     };
     return ASSAY_OK;
 }

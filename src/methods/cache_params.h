@@ -110,13 +110,16 @@
     {"traversal", ASSAY_PARAM_CHOICE, "", "scanline", 0, 0, "scanline|hierarchical",              \
      "Order in which the pixels' centres ask for records.",                                       \
      "[ward88]"},                                                                                 \
-    {"passes", ASSAY_PARAM_INT, "", "2", 1, 2, NULL,                                              \
-     "1: pixels are evaluated while the cache grows, which leaves seams; 2: when it is "          \
-     "complete.",                                                                                 \
-     "[gautron06] fig. 4.2"},                                                                     \
     {"max_records", ASSAY_PARAM_INT, "records", "10000000", 1, 1e9, NULL,                         \
      "Records a level; beyond them the nearest speaks for points that none reaches.",             \
      ""}
+
+/* Of methods that go over the image once or twice; image_out->passes is 2 without. */
+#define ASSAY_CACHE_PASSES_PARAM                                                                  \
+    {"passes", ASSAY_PARAM_INT, "", "2", 1, 2, NULL,                                              \
+     "1: pixels are evaluated while the cache grows, which leaves seams; 2: when it is "          \
+     "complete.",                                                                                 \
+     "[gautron06] fig. 4.2"}
 /* clang-format on */
 
 /* What the rows above say.  Errors: ARGUMENT (limits of R that exclude one another). */

@@ -488,6 +488,14 @@ static assay_status make_record(assay_irradiance_cache *cache, const assay_cache
     return status ? status : assay_record_store_add(cache->store, &record);
 }
 
+assay_status assay_irradiance_cache_make(assay_irradiance_cache  *cache,
+                                         const assay_cache_point *point)
+{
+    const assay_status status = make_record(cache, point);
+    return status == ASSAY_ERR_MEMORY ? assay_fail_memory(cache->context, "the irradiance cache")
+                                      : status;
+}
+
 /* ---- filling ---- */
 
 typedef struct {

@@ -83,6 +83,11 @@ assay_status assay_irradiance_cache_fill(assay_irradiance_cache *cache, const ch
                                          uint64_t before, uint64_t total, size_t count,
                                          const assay_cache_point *points, uint32_t *limits_out);
 
+/* Makes a record at a point, whatever is known there: for those who know by other means what is
+ * missing.  Errors: as of filling. */
+assay_status assay_irradiance_cache_make(assay_irradiance_cache  *cache,
+                                         const assay_cache_point *point);
+
 /* What a look-up sums over: the records numbered below `limit` that contribute at a point.  The
  * list is the worker's, until its next look-up.  Errors: MEMORY. */
 assay_status assay_irradiance_cache_find(assay_irradiance_cache *cache, assay_vec3 position,

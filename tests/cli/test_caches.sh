@@ -42,6 +42,7 @@ good_caches() { # METHOD SCENE SETTINGS ARRAY: the files are named after the met
 }
 good_caches irradiance-cache $box "$few" records/irradiance
 good_caches radiance-cache $shiny "$glossy" radiance_records/coefficient_gradient
+good_caches splat $shiny "$glossy --method splat" radiance_records/coefficient_gradient
 # ---- frames ----
 run render $box $few -o "$folder/frame-#.exr" --frames 0:1 --cache-out "$folder/frames"
 went_well && "$assay" diff "$folder/irradiance-cache-made.exr" "$folder/frame-0.exr" > /dev/null &&
