@@ -247,14 +247,16 @@ static void parallel_views(void **state)
 static void masks(void **state)
 {
     (void)state;
-    static const char *const materials[3] = {
-        "\"alphaMode\":\"MASK\",\"alphaCutoff\":0.5,\"pbrMetallicRoughness\":{\"baseColorFactor\":"
-        "[1,1,1,0.4]}",
-        "\"alphaMode\":\"BLEND\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.49]}",
-        "\"alphaMode\":\"BLEND\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.5]}"};
+    static const struct {
+        const char *mode, *alpha;
+    } cases[3]       = {{"MASK", "0.4"}, {"BLEND", "0.49"}, {"BLEND", "0.5"}};
     scene_builder *b = scene_builder_create();
     for (int i = 0; i < 3; i++) {
-        quad(b, scene_builder_material(b, materials[i]), -9, 9, -9, 9, 1 + i);
+        char material[160];
+        snprintf(material, sizeof material,
+                 "\"alphaMode\":\"%s\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,%s]}",
+                 cases[i].mode, cases[i].alpha);
+        quad(b, scene_builder_material(b, material), -9, 9, -9, 9, 1 + i);
     }
     lit_world               w    = lit_world_open(b, 1);
     const assay_raster_view view = looking_up(8, 8);
