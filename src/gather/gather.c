@@ -5,6 +5,7 @@
 #include "gather/gather.h"
 
 #include "core/parallel.h"
+#include "gather/gather_raster.h"
 
 /* Rays of one piece of work: enough to pay for handing it out. */
 enum { CHUNK = 32 };
@@ -28,31 +29,51 @@ assay_gather_site assay_gather_site_of(const assay_vertex *vertex)
     };
 }
 
-static void trace(const gather_job *job, int index, int worker, assay_gather_hit *hit_out)
+/* What is met in a cell's direction. */
+static bool meet(const gather_job *job, int index, assay_vec3 direction, int worker,
+                 assay_random *random, assay_hit *hit_out)
 {
-    const assay_gatherer          *g      = job->gatherer;
-    const assay_gather_site       *site   = job->site;
+    const assay_gatherer    *g    = job->gatherer;
+    const assay_gather_site *site = job->site;
+    if (job->hemisphere->plane) {
+        return gather_raster_find(g->world, job->hemisphere, index, hit_out);
+    }
+    return assay_world_closest(
+        g->world, assay_world_offset(g->world, site->position, site->ng, direction), direction,
+        false, random, &g->worker_counts[worker].scatter, hit_out);
+}
+
+/* Local; pixels are looked at through their middles, as they were made. */
+static assay_vec3 direction_of(const gather_job *job, int index, assay_random *random)
+{
     const assay_hemisphere_layout *layout = &job->hemisphere->layout;
-    assay_cell                    *cell   = &job->hemisphere->cells[index];
-    assay_random                  *random = &hit_out->random;
-    *random      = assay_random_start(g->seed, ASSAY_STAGE_GATHER, job->item, (uint64_t)index);
-    hit_out->hit = false;
+    if (job->hemisphere->plane) {
+        return job->hemisphere->cells[index].direction;
+    }
     double u1 = 0.5, u2 = 0.5;
     if (layout->jitter) {
         u1 = assay_random_next(random);
         u2 = assay_random_next(random);
     }
-    *cell                      = (assay_cell){.distance  = INFINITY,
-                                              .direction = assay_hemisphere_direction(layout, index / layout->phi,
-                                                                                      index % layout->phi, u1, u2)};
-    const assay_vec3 direction = frame3_to_world(&site->frame, cell->direction);
+    return assay_hemisphere_direction(layout, index / layout->phi, index % layout->phi, u1, u2);
+}
+
+static void trace(const gather_job *job, int index, int worker, assay_gather_hit *hit_out)
+{
+    const assay_gatherer    *g      = job->gatherer;
+    const assay_gather_site *site   = job->site;
+    assay_cell              *cell   = &job->hemisphere->cells[index];
+    assay_random            *random = &hit_out->random;
+    *random      = assay_random_start(g->seed, ASSAY_STAGE_GATHER, job->item, (uint64_t)index);
+    hit_out->hit = false;
+    const assay_vec3 local     = direction_of(job, index, random);
+    *cell                      = (assay_cell){.distance = INFINITY, .direction = local};
+    const assay_vec3 direction = frame3_to_world(&site->frame, local);
     if (!(vec3_dot(direction, site->ng) > 0.0)) {
         return;
     }
     assay_hit hit;
-    if (!assay_world_closest(g->world,
-                             assay_world_offset(g->world, site->position, site->ng, direction),
-                             direction, false, random, &g->worker_counts[worker].scatter, &hit)) {
+    if (!meet(job, index, direction, worker, random, &hit)) {
         return;
     }
     assay_vertex *vertex = &hit_out->vertex;
@@ -95,7 +116,11 @@ static assay_status run(gather_job *job)
 {
     const uint64_t     chunks = ((uint64_t)(job->end - job->first) + CHUNK - 1) / CHUNK;
     const assay_world *world  = job->gatherer->world;
-    const assay_status status = assay_parallel_for(world->scene->context, NULL, chunks, serve, job);
+    assay_status       status = ASSAY_OK;
+    if (job->site && job->hemisphere->plane && job->first == 0) {
+        status = gather_raster_draw(world, job->site, job->hemisphere);
+    }
+    status = status ? status : assay_parallel_for(world->scene->context, NULL, chunks, serve, job);
     return status == ASSAY_ERR_DOMAIN ? assay_world_fail_light(world) : status;
 }
 

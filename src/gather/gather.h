@@ -29,11 +29,12 @@ typedef struct {
     assay_ray_counts     *worker_counts; /* one a worker */
 } assay_gatherer;
 
-/* Fills all cells, in parallel.  item: number of the hemisphere among those of the seed; cell i
- * takes its numbers from (seed, ASSAY_STAGE_GATHER, item, i), so the same item sees the same.
- * What misses everything, or looks under the geometric normal, has radiance 0 and distance
- * INFINITY: light from the sky is direct light.  Errors: DOMAIN (radiance that is no finite
- * number), CANCELLED. */
+/* Fills all cells, in parallel: by rays, or by rasterisation where the strata are PLANE (what
+ * blends is then there from coverage 1/2 on).  item: number of the hemisphere among those of the
+ * seed; cell i takes its numbers from (seed, ASSAY_STAGE_GATHER, item, i), so the same item sees
+ * the same. What misses everything, or looks under the geometric normal, has radiance 0 and
+ * distance INFINITY: light from the sky is direct light.  Errors: DOMAIN (radiance that is no
+ * finite number), MEMORY, CANCELLED. */
 assay_status assay_gather(const assay_gatherer *gatherer, const assay_gather_site *site,
                           uint64_t item, assay_hemisphere *hemisphere);
 
@@ -45,7 +46,7 @@ typedef struct {
 } assay_gather_hit;
 
 /* The same in two steps, for who wants to know all that is seen before any light is asked: rays,
- * with the light still 0, ... */
+ * with the light still 0 (of a PLANE blocks of cells in their order, the first from 0 on), ... */
 assay_status assay_gather_rays(const assay_gatherer *gatherer, const assay_gather_site *site,
                                uint64_t item, int first, int count, assay_hemisphere *hemisphere,
                                assay_gather_hit *hits_out);

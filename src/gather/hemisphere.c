@@ -6,9 +6,12 @@
  * Invariant: a hemisphere can always be evaluated: until they are written, cells see nothing. */
 #include "gather/hemisphere.h"
 
+#include <assert.h>
+
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/numerics.h"
+#include "gather/hemisphere_plane.h"
 
 /* sin^2 theta or 1 - cos theta of border j is j / M; the other comes from what is left of M, so
  * that nothing cancels near the horizon and z stays above 0 however the sum rounds. */
@@ -25,12 +28,27 @@ static assay_theta_border theta_at(const assay_hemisphere_layout *layout, int j,
 assay_vec3 assay_hemisphere_direction(const assay_hemisphere_layout *layout, int j, int k,
                                       double u1, double u2)
 {
+    if (layout->strata == ASSAY_STRATA_PLANE) {
+        return hemisphere_plane_direction(layout, j, k, u1, u2);
+    }
     const assay_theta_border theta = theta_at(layout, j, u1);
     const assay_sincos       phi   = assay_sincos_turns((k + u2) / layout->phi);
     return vec3(theta.sin * phi.cos, theta.sin * phi.sin, theta.cos);
 }
 
-static void fill_tables(assay_hemisphere *h)
+static void fill_directions(assay_hemisphere *h)
+{
+    const assay_hemisphere_layout *layout = &h->layout;
+    for (int j = 0; j < layout->theta; j++) {
+        for (int k = 0; k < layout->phi; k++) {
+            h->cells[(size_t)j * (size_t)layout->phi + (size_t)k] =
+                (assay_cell){.distance  = INFINITY,
+                             .direction = assay_hemisphere_direction(layout, j, k, 0.5, 0.5)};
+        }
+    }
+}
+
+static void fill_borders(assay_hemisphere *h)
 {
     const assay_hemisphere_layout *layout = &h->layout;
     for (int j = 0; j <= layout->theta; j++) {
@@ -41,13 +59,6 @@ static void fill_tables(assay_hemisphere *h)
         const assay_sincos border = assay_sincos_turns((double)k / layout->phi);
         const assay_sincos middle = assay_sincos_turns((k + 0.5) / layout->phi);
         h->phi[k] = (assay_phi_column){border.sin, border.cos, middle.sin, middle.cos};
-    }
-    for (int j = 0; j < layout->theta; j++) {
-        for (int k = 0; k < layout->phi; k++) {
-            h->cells[(size_t)j * (size_t)layout->phi + (size_t)k] =
-                (assay_cell){.distance  = INFINITY,
-                             .direction = assay_hemisphere_direction(layout, j, k, 0.5, 0.5)};
-        }
     }
 }
 
@@ -60,7 +71,7 @@ assay_status assay_hemisphere_create(assay_context *context, const assay_hemisph
                           "a hemisphere of %d x %d cells: both must be 2 ... %d", layout->theta,
                           layout->phi, ASSAY_STRATA_MAX);
     }
-    if (layout->strata != ASSAY_STRATA_COSINE && layout->strata != ASSAY_STRATA_UNIFORM) {
+    if ((int)layout->strata < 0 || layout->strata > ASSAY_STRATA_PLANE) {
         return assay_fail(context, ASSAY_ERR_ARGUMENT, "unknown stratification of a hemisphere");
     }
     const size_t      rows = (size_t)layout->theta, columns = (size_t)layout->phi;
@@ -75,7 +86,16 @@ assay_status assay_hemisphere_create(assay_context *context, const assay_hemisph
         assay_hemisphere_destroy(context, h);
         return assay_fail_memory(context, "a hemisphere");
     }
-    fill_tables(h);
+    fill_directions(h);
+    if (layout->strata == ASSAY_STRATA_PLANE) {
+        const assay_status status = hemisphere_plane_create(context, layout, &h->plane);
+        if (status != ASSAY_OK) {
+            assay_hemisphere_destroy(context, h);
+            return status;
+        }
+    } else {
+        fill_borders(h);
+    }
     *hemisphere_out = h;
     return ASSAY_OK;
 }
@@ -86,6 +106,7 @@ void assay_hemisphere_destroy(assay_context *context, assay_hemisphere *hemisphe
         assay_release(context, hemisphere->cells);
         assay_release(context, hemisphere->theta);
         assay_release(context, hemisphere->phi);
+        hemisphere_plane_destroy(context, hemisphere->plane);
         assay_release(context, hemisphere);
     }
 }
@@ -100,11 +121,15 @@ static double height(const assay_hemisphere *h, int j)
 
 double assay_hemisphere_solid_angle(const assay_hemisphere *hemisphere, int j)
 {
+    assert(!hemisphere->plane);
     return ASSAY_TWO_PI / hemisphere->layout.phi * height(hemisphere, j);
 }
 
 assay_rgb assay_hemisphere_irradiance(const assay_hemisphere *hemisphere)
 {
+    if (hemisphere->plane) {
+        return hemisphere_plane_irradiance(hemisphere);
+    }
     const bool        uniform = hemisphere->layout.strata == ASSAY_STRATA_UNIFORM;
     const assay_cell *cell    = hemisphere->cells;
     const size_t      count   = (size_t)hemisphere->layout.theta * (size_t)hemisphere->layout.phi;
@@ -119,6 +144,9 @@ assay_rgb assay_hemisphere_irradiance(const assay_hemisphere *hemisphere)
 /* 1 / INFINITY is 0: what is not hit is infinitely far and counts in the weights alone. */
 double assay_hemisphere_harmonic_mean(const assay_hemisphere *hemisphere, assay_mean_weight weight)
 {
+    if (hemisphere->plane) {
+        return hemisphere_plane_mean(hemisphere, weight);
+    }
     const assay_cell *cell = hemisphere->cells;
     double            all = 0.0, near = 0.0;
     for (int j = 0; j < hemisphere->layout.theta; j++) {

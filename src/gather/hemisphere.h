@@ -6,22 +6,39 @@
  *     COSINE    sin^2 theta = (j + u1) / M      E = pi / (M N) sum of L
  *     UNIFORM   cos theta = 1 - (j + u1) / M    E = 2 pi / (M N) sum of L cos theta
  *
- * and phi = 2 pi (k + u2) / N for both.  Every sum runs in the order of the cells: a hemisphere
- * gives the same bits whoever filled it, and in whatever order. */
+ * and phi = 2 pi (k + u2) / N for both.  Strata PLANE are pixels of one plane.  Every sum runs in
+ * the order of the cells: a hemisphere gives the same bits whoever filled it, and in whatever
+ * order. */
 #ifndef ASSAY_GATHER_HEMISPHERE_H
 #define ASSAY_GATHER_HEMISPHERE_H
 
 #include "assay/basis.h"
 #include "math/frame.h"
 
-typedef enum { ASSAY_STRATA_COSINE, ASSAY_STRATA_UNIFORM } assay_strata;
+typedef enum { ASSAY_STRATA_COSINE, ASSAY_STRATA_UNIFORM, ASSAY_STRATA_PLANE } assay_strata;
 
+/* What stands for the directions between the plane and the horizon (docs/methods/raster.md). */
+typedef enum {
+    ASSAY_MISSING_PLANE,           /* nothing                                                    */
+    ASSAY_MISSING_RATIO,           /* all else, raised by what a furnace lacks [larsen04]        */
+    ASSAY_MISSING_BORDER,          /* the pixels of the rim, as published [gautron08]            */
+    ASSAY_MISSING_BORDER_CORRECTED /* the same, reaching down to the horizon                     */
+} assay_missing;
+
+/* Of strata PLANE: a square plane at distance 1 above the point, in theta rows of phi pixels, cell
+ * (j, k) being the k-th along x of the j-th row along y. */
 typedef struct {
     int          theta, phi; /* M, N: 2 ... ASSAY_STRATA_MAX each                                */
     assay_strata strata;
     bool         jitter; /* directions at random places of the cells, else at their centres; a note
                             of who fills the cells: nothing here depends on it                   */
+    double fov;          /* PLANE: the angle that its middle line subtends, rad, ASSAY_FOV_MIN ...
+                            ASSAY_FOV_MAX                                                      */
+    assay_missing missing; /* PLANE                                                              */
 } assay_hemisphere_layout;
+
+#define ASSAY_FOV_MIN 0.01
+#define ASSAY_FOV_MAX 3.14
 
 #define ASSAY_STRATA_MAX 4096
 
@@ -45,14 +62,15 @@ typedef struct {
 } assay_phi_column;
 
 typedef struct {
-    assay_hemisphere_layout layout;
-    assay_cell             *cells; /* [j * phi + k]: to be written by whoever gathers            */
-    assay_theta_border     *theta; /* M + 1 */
-    assay_phi_column       *phi;   /* N     */
+    assay_hemisphere_layout  layout;
+    assay_cell              *cells; /* [j * phi + k]: to be written by whoever gathers            */
+    assay_theta_border      *theta; /* M + 1 */
+    assay_phi_column        *phi;   /* N     */
+    struct hemisphere_plane *plane; /* what pixels weigh; NULL unless PLANE */
 } assay_hemisphere;
 
 /* Cells that see nothing: directions at the centres, radiance 0, distance INFINITY.
- * Errors: ARGUMENT (strata outside 2 ... ASSAY_STRATA_MAX or of no kind), MEMORY. */
+ * Errors: ARGUMENT (strata outside 2 ... ASSAY_STRATA_MAX or of no kind, fov, missing), MEMORY. */
 assay_status assay_hemisphere_create(assay_context *context, const assay_hemisphere_layout *layout,
                                      assay_hemisphere **hemisphere_out);
 void         assay_hemisphere_destroy(assay_context *context, assay_hemisphere *hemisphere);
@@ -61,7 +79,7 @@ void         assay_hemisphere_destroy(assay_context *context, assay_hemisphere *
 assay_vec3 assay_hemisphere_direction(const assay_hemisphere_layout *layout, int j, int k,
                                       double u1, double u2);
 
-/* Solid angle of each cell of stratum j, sr; all M N of them make 2 pi. */
+/* Solid angle of each cell of stratum j, sr; all M N of them make 2 pi.  Not of PLANE. */
 double assay_hemisphere_solid_angle(const assay_hemisphere *hemisphere, int j);
 
 /* Irradiance, W/m2. */
@@ -69,7 +87,8 @@ assay_rgb assay_hemisphere_irradiance(const assay_hemisphere *hemisphere);
 
 /* Gradients per channel, local frame: E(n') = E + (n x n') . g, W/(m2 rad), g tangential; and the
  * translational one, W/m3 [ward-heckbert92, as in gautron06 eq. 2.7, absolute]; normal: with a
- * component along z, too.  Where all cells have one radiance, both are exactly 0. */
+ * component along z, too.  Where all cells have one radiance, both are exactly 0 (of PLANE the
+ * rotational one to rounding). */
 void assay_hemisphere_rotation_gradient(const assay_hemisphere *hemisphere,
                                         assay_vec3              gradient_out[3]);
 void assay_hemisphere_translation_gradient(const assay_hemisphere *hemisphere, bool normal,
@@ -96,7 +115,7 @@ assay_status assay_hemisphere_project(const assay_hemisphere *hemisphere, assay_
  * POINTS: what is seen are fixed points that keep their radiance; their solid angles and directions
  * move; wrong where they hide one another, and for UNIFORM strata.  WALLS: the borders of the cells
  * move as the nearer of their neighbours does; exactly 0 where all cells have one radiance.
- * gradients_out: 3 rows of count.  Errors: as above. */
+ * gradients_out: 3 rows of count.  Errors: as above; ARGUMENT for POINTS on a PLANE, too. */
 typedef enum { ASSAY_GRADIENT_POINTS, ASSAY_GRADIENT_WALLS } assay_gradient_form;
 assay_status assay_hemisphere_project_gradient(const assay_hemisphere *hemisphere,
                                                assay_context *context, const assay_basis *basis,

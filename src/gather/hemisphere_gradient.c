@@ -7,7 +7,7 @@
  *
  * Invariant: phi is cyclic; column 0 has column N - 1 before it. */
 #include "core/numerics.h"
-#include "gather/hemisphere.h"
+#include "gather/hemisphere_plane.h"
 
 /* b - a per channel. */
 static assay_rgb step_between(const assay_cell *a, const assay_cell *b)
@@ -40,6 +40,10 @@ static const assay_cell *row_of(const assay_hemisphere *h, int j)
 void assay_hemisphere_rotation_gradient(const assay_hemisphere *hemisphere,
                                         assay_vec3              gradient_out[3])
 {
+    if (hemisphere->plane) {
+        hemisphere_plane_rotation(hemisphere, gradient_out);
+        return;
+    }
     const int  columns = hemisphere->layout.phi;
     assay_vec3 sum[3]  = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     for (int j = 0; j < hemisphere->layout.theta; j++) {
@@ -95,6 +99,10 @@ static void add_phi_walls(const assay_hemisphere *h, int j, assay_vec3 sum[3])
 void assay_hemisphere_translation_gradient(const assay_hemisphere *hemisphere, bool normal,
                                            assay_vec3 gradient_out[3])
 {
+    if (hemisphere->plane) {
+        hemisphere_plane_translation(hemisphere, normal, gradient_out);
+        return;
+    }
     assay_vec3 sum[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     for (int j = 0; j < hemisphere->layout.theta; j++) {
         if (j > 0) {

@@ -14,6 +14,7 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "gather/hemisphere_grid.h"
+#include "gather/hemisphere_plane.h"
 
 /* Orthonormal under solid angle on the hemisphere, so that a coefficient is an integral. */
 assay_status hemisphere_project_check(assay_context *context, const assay_basis *basis)
@@ -125,7 +126,8 @@ assay_status assay_hemisphere_project(const assay_hemisphere *hemisphere, assay_
     if (!sums) {
         return assay_fail_memory(context, "a projection");
     }
-    status = hemisphere->layout.strata == ASSAY_STRATA_UNIFORM
+    status = hemisphere->plane ? hemisphere_plane_project(hemisphere, context, basis, sums)
+             : hemisphere->layout.strata == ASSAY_STRATA_UNIFORM
                  ? project_directions(hemisphere, context, basis, sums)
                  : project_cells(hemisphere, context, basis, sums);
     if (status == ASSAY_OK) {

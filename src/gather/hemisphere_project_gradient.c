@@ -16,6 +16,7 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "gather/hemisphere_grid.h"
+#include "gather/hemisphere_plane.h"
 #include "gather/hemisphere_project.h"
 
 /* Surfaces seen more nearly edge-on than this do not change their solid angle by turning.
@@ -175,6 +176,17 @@ static assay_status add_stratum(gradient_work *work, int j)
     return status;
 }
 
+static assay_status add_strata(gradient_work *work, assay_context *context,
+                               const assay_hemisphere *hemisphere, const assay_basis *basis)
+{
+    assay_status status = hemisphere_grid_open(&work->grid, context, hemisphere, basis);
+    for (int j = 0; j < hemisphere->layout.theta && status == ASSAY_OK; j++) {
+        status = add_stratum(work, j);
+    }
+    hemisphere_grid_close(&work->grid, context);
+    return status;
+}
+
 assay_status assay_hemisphere_project_gradient(const assay_hemisphere *hemisphere,
                                                assay_context *context, const assay_basis *basis,
                                                assay_gradient_form form, assay_vec3 *gradients_out)
@@ -186,19 +198,21 @@ assay_status assay_hemisphere_project_gradient(const assay_hemisphere *hemispher
     if (form != ASSAY_GRADIENT_POINTS && form != ASSAY_GRADIENT_WALLS) {
         return assay_fail(context, ASSAY_ERR_ARGUMENT, "unknown form of a gradient");
     }
+    if (hemisphere->plane && form == ASSAY_GRADIENT_POINTS) {
+        return assay_fail(context, ASSAY_ERR_ARGUMENT,
+                          "gradients of coefficients on a plane are those of walls");
+    }
     const size_t  count = 3 * assay_basis_count(basis);
     gradient_work work  = {.form = form, .sums = assay_allocate(context, count, sizeof *work.sums)};
     if (!work.sums) {
         return assay_fail_memory(context, "a gradient");
     }
-    assay_status status = hemisphere_grid_open(&work.grid, context, hemisphere, basis);
-    for (int j = 0; j < hemisphere->layout.theta && status == ASSAY_OK; j++) {
-        status = add_stratum(&work, j);
-    }
+    assay_status status =
+        hemisphere->plane ? hemisphere_plane_project_gradient(hemisphere, context, basis, work.sums)
+                          : add_strata(&work, context, hemisphere, basis);
     if (status == ASSAY_OK) {
         memcpy(gradients_out, work.sums, count * sizeof *work.sums);
     }
-    hemisphere_grid_close(&work.grid, context);
     assay_release(context, work.sums);
     return status;
 }

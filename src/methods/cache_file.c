@@ -11,11 +11,25 @@
 #include "scene/scene_moment.h"
 
 /* What the records' light depends on; the last two of radiance records alone. */
-enum { KEY_COUNT = 7, IRRADIANCE_KEYS = 5, TEXT_SIZE = 80 };
+enum { KEY_COUNT = 8, IRRADIANCE_KEYS = 6, TEXT_SIZE = 80 };
 
-static const char *const KEYS[KEY_COUNT] = {
-    "content",   "scene.digest", "scene.moment",        "bounces",
-    "secondary", "order",        "coefficient_gradient"};
+static const char *const KEYS[KEY_COUNT] = {"content", "scene.digest",        "scene.moment",
+                                            "bounces", "secondary",           "gather",
+                                            "order",   "coefficient_gradient"};
+
+/* A plane's view and shadow maps leave their mark; the number of cells is a matter of noise. */
+static void describe_gathering(const assay_irradiance_cache_settings *settings,
+                               char                                   text[TEXT_SIZE])
+{
+    static const char *const missing[] = {"plane", "ratio", "border", "border-corrected"};
+    const char              *shadow    = settings->shadow == ASSAY_SHADOW_MAP ? " shadow=map" : "";
+    if (settings->layout.strata == ASSAY_STRATA_PLANE) {
+        snprintf(text, TEXT_SIZE, "raster %.17g %s%s", settings->layout.fov,
+                 missing[settings->layout.missing], shadow);
+    } else {
+        snprintf(text, TEXT_SIZE, "rays%s", shadow);
+    }
+}
 
 static const char RADIANCE_PREFIX[] = "radiance_records";
 
@@ -37,9 +51,10 @@ static description describe(const assay_frame *frame, const assay_cache_set *cac
     assay_scene_moment(scene, d.values[2]);
     snprintf(d.values[3], TEXT_SIZE, bounces == ASSAY_BOUNCES_INF ? "inf" : "%d", bounces);
     snprintf(d.values[4], TEXT_SIZE, "%s", secondary[caches->settings->secondary]);
+    describe_gathering(caches->settings, d.values[5]);
     if (caches->glossy) {
-        snprintf(d.values[5], TEXT_SIZE, "%d", caches->glossy->order);
-        snprintf(d.values[6], TEXT_SIZE, "%s", gradient[caches->glossy->gradient]);
+        snprintf(d.values[6], TEXT_SIZE, "%d", caches->glossy->order);
+        snprintf(d.values[7], TEXT_SIZE, "%s", gradient[caches->glossy->gradient]);
     }
     return d;
 }

@@ -1,6 +1,8 @@
 /* cache_params.c - from parameters to the settings of caches. */
 #include "methods/cache_params.h"
 
+#include <string.h>
+
 #include "core/context.h"
 
 /* 0 stands for no limit. */
@@ -32,12 +34,50 @@ static assay_record_rules rules_of(const assay_params *params)
     };
 }
 
+static assay_hemisphere_layout layout_of(const assay_params *params)
+{
+    if (assay_params_choice(params, "gather") == 1) {
+        return (assay_hemisphere_layout){.theta  = assay_params_int(params, "raster_size"),
+                                         .phi    = assay_params_int(params, "raster_size"),
+                                         .strata = ASSAY_STRATA_PLANE,
+                                         .fov    = assay_params_real(params, "raster_fov"),
+                                         .missing =
+                                             (assay_missing)assay_params_choice(params, "missing")};
+    }
+    return (assay_hemisphere_layout){.theta  = assay_params_int(params, "theta_strata"),
+                                     .phi    = assay_params_int(params, "phi_strata"),
+                                     .strata = (assay_strata)assay_params_choice(params, "strata"),
+                                     .jitter = assay_params_bool(params, "jitter")};
+}
+
+static assay_status check_shadow(assay_context *context, const assay_params *params)
+{
+    if (assay_params_choice(params, "shadow") == ASSAY_SHADOW_MAP &&
+        assay_params_choice(params, "secondary") != ASSAY_SECONDARY_DIRECT) {
+        return assay_fail(context, ASSAY_ERR_ARGUMENT,
+                          "parameter 'shadow' is map, which goes with secondary=direct alone, not "
+                          "with %s",
+                          assay_params_text(params, "secondary"));
+    }
+    return ASSAY_OK;
+}
+
+static int passes_of(const assay_params *params)
+{
+    const assay_param_desc *row = assay_params_table(params);
+    while (row->name && strcmp(row->name, "passes") != 0) {
+        row++;
+    }
+    return row->name ? assay_params_int(params, "passes") : 2;
+}
+
 assay_status assay_cache_params_read(assay_context *context, const assay_params *params,
                                      assay_irradiance_cache_settings *cache_out,
                                      assay_cached_image_settings     *image_out)
 {
     assay_status status = check_limits(context, params, "r_min", "r_max");
     status = status ? status : check_limits(context, params, "r_min_pixels", "r_max_pixels");
+    status = status ? status : check_shadow(context, params);
     if (status != ASSAY_OK) {
         return status;
     }
@@ -49,10 +89,7 @@ assay_status assay_cache_params_read(assay_context *context, const assay_params 
              .estimator      = (assay_estimator)assay_params_choice(params, "estimator"),
     };
     *cache_out = (assay_irradiance_cache_settings){
-        .layout          = {.theta  = assay_params_int(params, "theta_strata"),
-                            .phi    = assay_params_int(params, "phi_strata"),
-                            .strata = (assay_strata)assay_params_choice(params, "strata"),
-                            .jitter = assay_params_bool(params, "jitter")},
+        .layout          = layout_of(params),
         .rules           = rules_of(params),
         .mean            = (assay_mean_weight)assay_params_choice(params, "mean"),
         .r_min           = assay_params_real(params, "r_min"),
@@ -64,6 +101,9 @@ assay_status assay_cache_params_read(assay_context *context, const assay_params 
         .normal_gradient = assay_params_bool(params, "normal_gradient"),
         .max_records     = (uint32_t)assay_params_int(params, "max_records"),
         .secondary       = secondary,
+        .shadow          = (assay_shadow)assay_params_choice(params, "shadow"),
+        .shadow_maps     = {.side = assay_params_int(params, "shadow_size"),
+                            .taps = assay_params_int(params, "shadow_taps")},
         .levels          = assay_params_int(params, "levels"),
         .path            = path,
     };
@@ -71,7 +111,7 @@ assay_status assay_cache_params_read(assay_context *context, const assay_params 
         .path   = path,
         .spp    = (uint32_t)assay_params_int(params, "spp"),
         .order  = (assay_pixel_order)assay_params_choice(params, "traversal"),
-        .passes = assay_params_int(params, "passes"),
+        .passes = passes_of(params),
     };
     return ASSAY_OK;
 }

@@ -37,6 +37,32 @@
     {"jitter", ASSAY_PARAM_BOOL, "", "on", 0, 0, NULL,                                            \
      "Rays go through random places of the cells; off: through their centres.",                   \
      ""},                                                                                         \
+    {"gather", ASSAY_PARAM_CHOICE, "", "rays", 0, 0, "rays|raster",                               \
+     "A hemisphere is seen by rays through its cells, or rasterised onto one plane, which "       \
+     "misses the directions near the horizon.",                                                   \
+     "[gautron06] 4.4.1"},                                                                        \
+    {"raster_size", ASSAY_PARAM_INT, "pixels", "64", 2, ASSAY_STRATA_MAX, NULL,                   \
+     "Side of the plane of gather=raster; theta_strata, phi_strata, strata and jitter are then "  \
+     "not used.",                                                                                 \
+     "[gautron06] 4.4.1"},                                                                        \
+    {"raster_fov", ASSAY_PARAM_REAL, "rad", "2.214297435588181",  ASSAY_FOV_MIN, ASSAY_FOV_MAX,   \
+     NULL, "Field of view of gather=raster; 2 atan 2 as published (126.87 degrees).",             \
+     "[larsen04], [gautron08]"},                                                                  \
+    {"missing", ASSAY_PARAM_CHOICE, "", "border-corrected", 0, 0,                                 \
+     "plane|ratio|border|border-corrected",                                                       \
+     "What stands for the directions that gather=raster misses: nothing, a ratio, the pixels of " \
+     "the rim as published, or these with the cosine of where they are.",                         \
+     "[gautron06] 4.4.1, [larsen04], [gautron08]"},                                               \
+    {"shadow", ASSAY_PARAM_CHOICE, "", "ray", 0, 0, "ray|map",                                    \
+     "Shadows where a gathering ray ends, with secondary=direct: by rays, or by maps of punctual "\
+     "lights (all others by rays).",                                                              \
+     "[gautron06] 4.4.1"},                                                                        \
+    {"shadow_size", ASSAY_PARAM_INT, "texels", "1024", 16, 8192, NULL,                            \
+     "Side of a shadow map.",                                                                     \
+     "[gautron06] 4.7"},                                                                          \
+    {"shadow_taps", ASSAY_PARAM_INT, "", "16", 1, 1024, NULL,                                     \
+     "Depths that percentage-closer filtering compares: a square number.",                        \
+     "[gautron06] 4.7, [reeves87]"},                                                              \
     {"secondary", ASSAY_PARAM_CHOICE, "", "path", 0, 0, "direct|path|cache",                      \
      "Light where a gathering ray ends: its direct light alone (at most 2 bounces in all), a "    \
      "path from there on, or direct light and a cache of its own.",                               \
@@ -84,13 +110,16 @@
     {"traversal", ASSAY_PARAM_CHOICE, "", "scanline", 0, 0, "scanline|hierarchical",              \
      "Order in which the pixels' centres ask for records.",                                       \
      "[ward88]"},                                                                                 \
-    {"passes", ASSAY_PARAM_INT, "", "2", 1, 2, NULL,                                              \
-     "1: pixels are evaluated while the cache grows, which leaves seams; 2: when it is "          \
-     "complete.",                                                                                 \
-     "[gautron06] fig. 4.2"},                                                                     \
     {"max_records", ASSAY_PARAM_INT, "records", "10000000", 1, 1e9, NULL,                         \
      "Records a level; beyond them the nearest speaks for points that none reaches.",             \
      ""}
+
+/* Of methods that go over the image once or twice; image_out->passes is 2 without. */
+#define ASSAY_CACHE_PASSES_PARAM                                                                  \
+    {"passes", ASSAY_PARAM_INT, "", "2", 1, 2, NULL,                                              \
+     "1: pixels are evaluated while the cache grows, which leaves seams; 2: when it is "          \
+     "complete.",                                                                                 \
+     "[gautron06] fig. 4.2"}
 /* clang-format on */
 
 /* What the rows above say.  Errors: ARGUMENT (limits of R that exclude one another). */

@@ -7,6 +7,7 @@
 
 #include "core/alloc.h"
 #include "core/context.h"
+#include "core/numerics.h"
 #include "core/parallel.h"
 #include "math/sobol.h"
 #include "trace/camera_ray.h"
@@ -49,13 +50,40 @@ typedef struct {
     size_t                             count;  /* of this wave */
     int                                sample; /* or CENTRE    */
     const char                        *phase;
-    uint64_t                           done, total; /* points, of the phase    */
+    uint64_t                           done, total;      /* points, of the phase    */
+    bool                               fills, evaluates; /* this sweep          */
 } image_job;
 
 assay_rgb assay_cached_point_lambert(const assay_cached_point *point)
 {
     const assay_bsdf_view view = assay_bsdf_seen_from(&point->vertex.bsdf, point->vertex.wo_local);
     return assay_bsdf_view_lambert(&view);
+}
+
+static assay_rgb not_negative(assay_rgb c)
+{
+    return rgb(c.r > 0.0 ? c.r : 0.0, c.g > 0.0 ? c.g : 0.0, c.b > 0.0 ? c.b : 0.0);
+}
+
+assay_rgb assay_cached_point_sum(assay_rgb lambert, assay_rgb irradiance, const assay_rgb *gloss,
+                                 bool clamp)
+{
+    const assay_rgb diffuse = rgb_scale(rgb_mul(irradiance, lambert), ASSAY_INV_PI);
+    if (!gloss) {
+        return diffuse;
+    }
+    const assay_rgb sum = rgb_add(diffuse, *gloss);
+    return clamp ? not_negative(sum) : sum;
+}
+
+assay_rgb assay_cached_point_rest(const assay_world *world, const assay_path_settings *path,
+                                  const assay_cached_point *point, assay_random *random,
+                                  assay_ray_counts *counts)
+{
+    return point->vertex.bsdf.model == ASSAY_BSDF_LAMBERT
+               ? rgb_grey(0.0)
+               : assay_path_indirect(world, path, &point->vertex, assay_cached_point_lambert(point),
+                                     random, counts);
 }
 
 /* ---- the order ---- */
@@ -277,19 +305,19 @@ static assay_status evaluate(void *user, uint64_t chunk, int worker)
 
 /* ---- sweeps ---- */
 
-static assay_status serve_wave(image_job *job, bool evaluates)
+static assay_status serve_wave(image_job *job)
 {
     assay_context *context = job->frame->context;
     const uint64_t chunks  = (job->count + CHUNK - 1) / CHUNK;
     assay_status   status  = assay_parallel_for(context, NULL, chunks, look, job);
-    if (status == ASSAY_OK && job->settings->path.bounces >= 2) {
+    if (status == ASSAY_OK && job->fills && job->settings->path.bounces >= 2) {
         status = job->light->fill(job->light->user, job->phase, job->done, job->total, job->count,
                                   job->asked, job->limits);
     }
     for (size_t i = 0; i < job->count && job->settings->passes > 1; i++) {
         job->limits[i] = UINT32_MAX;
     }
-    if (status == ASSAY_OK && evaluates) {
+    if (status == ASSAY_OK && job->evaluates) {
         status = assay_parallel_for(context, NULL, chunks, evaluate, job);
         if (status == ASSAY_ERR_MEMORY) {
             return assay_fail_memory(context, "a look into the cache");
@@ -311,16 +339,30 @@ static bool take_wave(image_job *job, pixel_walk *walk)
 }
 
 /* One sample of every pixel, or the centres. */
-static assay_status sweep(image_job *job, int sample, bool evaluates)
+static assay_status sweep(image_job *job, int sample, bool fills, bool evaluates)
 {
     const assay_pixel_order order  = sample == CENTRE ? job->settings->order : ASSAY_ORDER_SCANLINE;
     pixel_walk              walk   = walk_start(job->frame->width, job->frame->height, order);
     assay_status            status = ASSAY_OK;
     job->sample                    = sample;
+    job->fills                     = fills;
+    job->evaluates                 = evaluates;
     while (status == ASSAY_OK && take_wave(job, &walk)) {
-        status = serve_wave(job, evaluates);
+        status = serve_wave(job);
     }
     return status;
+}
+
+/* The same points in two sweeps, so that all are known before the first is evaluated. */
+static assay_status sweep_whole(image_job *job, int sample, bool evaluates)
+{
+    const bool fills =
+        job->settings->path.bounces >= 2 && (sample == CENTRE || !job->settings->centres);
+    assay_status status = fills ? sweep(job, sample, true, false) : ASSAY_OK;
+    if (status == ASSAY_OK && fills) {
+        status = job->light->complete(job->light->user, job->phase, job->done, job->total);
+    }
+    return status || !evaluates ? status : sweep(job, sample, false, true);
 }
 
 static void begin(image_job *job, const char *phase, int samples)
@@ -339,11 +381,27 @@ static assay_status run_two_passes(image_job *job, int samples)
     const bool   fills  = job->settings->path.bounces >= 2;
     assay_status status = ASSAY_OK;
     begin(job, "records", samples ? 1 : 0);
-    status = fills ? sweep(job, CENTRE, false) : ASSAY_OK;
-    status = status || !fills || !samples ? status : sweep(job, 0, false);
+    status = fills ? sweep(job, CENTRE, true, false) : ASSAY_OK;
+    status = status || !fills || !samples ? status : sweep(job, 0, true, false);
     begin(job, "render", samples);
     for (int s = CENTRE; s < samples && status == ASSAY_OK; s++) {
-        status = sweep(job, s, true);
+        status = sweep(job, s, true, true);
+    }
+    return status;
+}
+
+/* As two passes, for light that is complete before a sweep is evaluated. */
+static assay_status run_whole(image_job *job, int samples)
+{
+    const bool   fills  = job->settings->path.bounces >= 2;
+    const bool   ahead  = fills && samples > 0 && !job->settings->centres;
+    assay_status status = ASSAY_OK;
+    begin(job, "records", 1);
+    status = ahead ? sweep_whole(job, CENTRE, false) : ASSAY_OK;
+    status = status || !ahead ? status : sweep_whole(job, 0, false);
+    begin(job, "render", !fills ? samples : job->settings->centres ? samples + 1 : 2 * samples + 1);
+    for (int s = CENTRE; s < samples && status == ASSAY_OK; s++) {
+        status = sweep_whole(job, s, true);
     }
     return status;
 }
@@ -354,9 +412,11 @@ static assay_status run_one_pass(image_job *job, int samples)
     pixel_walk   walk   = walk_start(job->frame->width, job->frame->height, job->settings->order);
     assay_status status = ASSAY_OK;
     begin(job, "render", samples);
+    job->fills     = true;
+    job->evaluates = true;
     while (status == ASSAY_OK && take_wave(job, &walk)) {
         for (job->sample = CENTRE; job->sample < samples && status == ASSAY_OK; job->sample++) {
-            status = serve_wave(job, true);
+            status = serve_wave(job);
         }
     }
     return status;
@@ -366,6 +426,9 @@ static assay_status run(image_job *job)
 {
     const bool wanted  = (job->frame->layers & (ASSAY_LAYERS_COLOR | ASSAY_LAYERS_SPLIT)) != 0;
     const int  samples = wanted ? (int)job->settings->spp : 0;
+    if (job->light->complete) {
+        return run_whole(job, samples);
+    }
     return job->settings->passes == 1 ? run_one_pass(job, samples) : run_two_passes(job, samples);
 }
 

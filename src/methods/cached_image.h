@@ -26,12 +26,26 @@ typedef struct {
 /* Albedo of the Lambertian part that the point shows (assay_bsdf_view_lambert). */
 assay_rgb assay_cached_point_lambert(const assay_cached_point *point);
 
+/* What the caches say of the light towards the point's wo: lambert / pi times the indirect
+ * irradiance, and what the rest of its BSDF reflects, or NULL where that is none of theirs.  clamp:
+ * truncated harmonics ring; a sum with them that is below 0 counts as 0. */
+assay_rgb assay_cached_point_sum(assay_rgb lambert, assay_rgb irradiance, const assay_rgb *gloss,
+                                 bool clamp);
+
+/* One path for that rest; black for a Lambertian. */
+assay_rgb assay_cached_point_rest(const assay_world *world, const assay_path_settings *path,
+                                  const assay_cached_point *point, assay_random *random,
+                                  assay_ray_counts *counts);
+
 typedef struct {
     void *user;
     /* Makes the caches know enough at the points, in their order; limits_out: what had been made
      * when each was served.  phase, before, total: for the progress. */
     assay_status (*fill)(void *user, const char *phase, uint64_t before, uint64_t total,
                          size_t count, const assay_cached_point *points, uint32_t *limits_out);
+    /* NULL, or called when fill was given all points of a sweep (the centres of all pixels, or one
+     * sample of each), before any of them is evaluated; the limits are then of no use. */
+    assay_status (*complete)(void *user, const char *phase, uint64_t before, uint64_t total);
     /* Indirect radiance towards the point's wo, from what had been made within the limit. */
     assay_status (*radiance)(void *user, const assay_cached_point *point, uint32_t limit,
                              assay_random *random, assay_ray_counts *counts, int worker,
@@ -47,8 +61,9 @@ typedef struct {
 typedef struct {
     assay_path_settings path; /* bounces, estimator, roulette */
     uint32_t            spp;
-    assay_pixel_order   order;  /* of the pixels' centres        */
-    int                 passes; /* 1: evaluated as the caches grow; 2: when they are complete */
+    assay_pixel_order   order;   /* of the pixels' centres        */
+    int                 passes;  /* 1: evaluated as the caches grow; 2: when they are complete */
+    bool                centres; /* fill and complete are given the centres alone              */
 } assay_cached_image_settings;
 
 /* Errors: MEMORY, DOMAIN, CANCELLED, and those of the caches. */

@@ -4,6 +4,8 @@
  * colour alone, in which every model is affine, and so is the Lambertian that may be taken away. */
 #include "methods/material_grids.h"
 
+#include <string.h>
+
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/numerics.h"
@@ -285,6 +287,26 @@ assay_status assay_material_grids_reflect(const assay_material_grids *grids, siz
     }
     if (status == ASSAY_OK) {
         *radiance_out = rgb(sums[0], sums[1], sums[2]);
+    }
+    return status;
+}
+
+assay_status assay_material_grids_brdf(const assay_material_grids *grids, size_t count,
+                                       assay_rgb base_color, assay_vec3 wo, double *scratch,
+                                       double *coefficients_out)
+{
+    assay_status status = ASSAY_OK;
+    if (!grids->slope || !(wo.z > 0.0)) {
+        memset(coefficients_out, 0, CHANNELS * count * sizeof *coefficients_out);
+        return ASSAY_OK;
+    }
+    status = assay_brdf_grid_lookup(grids->slope, wo, scratch);
+    for (int c = 0; c < CHANNELS && status == ASSAY_OK; c++) {
+        double *row = coefficients_out + (size_t)c * count;
+        status      = assay_brdf_grid_lookup(grids->black[c], wo, row);
+        for (size_t i = 0; i < count && status == ASSAY_OK; i++) {
+            row[i] += channel_of(base_color, c) * scratch[i];
+        }
     }
     return status;
 }

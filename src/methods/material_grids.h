@@ -60,4 +60,11 @@ assay_status assay_material_grids_reflect(const assay_material_grids *grids, siz
                                           const assay_vertex *vertex, const double *light,
                                           double *scratch, assay_rgb *radiance_out);
 
+/* The coefficients of f cos themselves, 3 rows of count, in the frame of assay_material_frame, for
+ * this base colour and wo in that frame; scratch: count.  0 where wo is on the horizon.  Errors:
+ * DOMAIN. */
+assay_status assay_material_grids_brdf(const assay_material_grids *grids, size_t count,
+                                       assay_rgb base_color, assay_vec3 wo, double *scratch,
+                                       double *coefficients_out);
+
 #endif

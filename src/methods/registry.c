@@ -7,13 +7,17 @@
 #include "methods/irradiance_cache/irradiance_cache_method.h"
 #include "methods/path/path.h"
 #include "methods/radiance_cache/radiance_cache_method.h"
+#include "methods/splat/splat_method.h"
 
+/* clang-format off */
 static const assay_method *const METHODS[] = {
     &assay_method_path,
     &assay_method_hsh_environment,
     &assay_method_irradiance_cache,
     &assay_method_radiance_cache,
+    &assay_method_splat,
 };
+/* clang-format on */
 
 enum { METHOD_COUNT = sizeof METHODS / sizeof METHODS[0] };
 

@@ -43,6 +43,7 @@ struct assay_irradiance_cache {
     assay_irradiance_cache         *next;
     bool                            borrows_next; /* it belongs to another cache     */
     assay_record_companion          companion;    /* keep NULL: none                 */
+    assay_shadow_maps              *shadows;      /* NULL without; borrowed as next is */
     assay_gather_hit               *hits;         /* WAVE: what cells see, and ...  */
     assay_cache_point              *seen;         /* ... ask; NULL but with secondary CACHE  */
 };
@@ -88,6 +89,9 @@ void assay_irradiance_cache_destroy(assay_irradiance_cache *cache)
 {
     while (cache) {
         assay_irradiance_cache *next = cache->borrows_next ? NULL : cache->next;
+        if (!cache->borrows_next) {
+            assay_shadow_maps_destroy(cache->shadows);
+        }
         destroy(cache);
         cache = next;
     }
@@ -128,9 +132,15 @@ static assay_irradiance_cache *create_level(const assay_world                   
 }
 
 /* A level's light is seen through those above, each of which averages over many of its records and
- * dims it: half the rays will do, as in [ward88]. */
-static void halve(assay_hemisphere_layout *layout)
+ * dims it: half the rays will do, and records 1.4 times as far apart, as in [ward88].  (Not past
+ * a = 1, beyond which several records are asked for.) */
+static void relax(assay_irradiance_cache_settings *settings)
 {
+    assay_hemisphere_layout *layout = &settings->layout;
+    assay_record_rules      *rules  = &settings->rules;
+    if (rules->a < 1.0) {
+        rules->a = fmin(1.0, rules->a * 1.41421356237309504880);
+    }
     static const int least = 4;
     const int        theta = (int)(layout->theta * 0.70710678118654752440);
     const int        phi   = (int)(layout->phi * 0.70710678118654752440);
@@ -157,7 +167,15 @@ assay_status assay_irradiance_cache_create(const assay_world                    
         }
         place = &(*place)->next;
         at.path.bounces -= at.path.bounces != ASSAY_BOUNCES_INF;
-        halve(&at.layout);
+        relax(&at);
+    }
+    if (settings->shadow == ASSAY_SHADOW_MAP) {
+        const assay_status status =
+            assay_shadow_maps_create(world, &settings->shadow_maps, &first->shadows);
+        if (status != ASSAY_OK) {
+            assay_irradiance_cache_destroy(first);
+            return status;
+        }
     }
     *cache_out = first;
     return ASSAY_OK;
@@ -176,6 +194,7 @@ assay_status assay_irradiance_cache_create_beside(assay_irradiance_cache        
     }
     cache->companion    = *companion;
     cache->next         = beside->next;
+    cache->shadows      = beside->shadows;
     cache->borrows_next = true;
     *cache_out          = cache;
     return ASSAY_OK;
@@ -269,6 +288,14 @@ static assay_rgb light_by_path(void *user, int cell, assay_vertex *vertex, assay
     return rgb_add(light.direct, light.indirect);
 }
 
+static assay_rgb light_by_map(void *user, int cell, assay_vertex *vertex, assay_random *random,
+                              int worker)
+{
+    const assay_irradiance_cache *cache = user;
+    (void)cell;
+    return assay_shadow_maps_light(cache->shadows, vertex, random, &cache->worker_counts[worker]);
+}
+
 /* Where the next level answers, what it will be asked is told to it before. */
 typedef struct {
     assay_irradiance_cache *cache;
@@ -345,7 +372,9 @@ static assay_status gather(assay_irradiance_cache *cache, const assay_gather_sit
 {
     const assay_gatherer gatherer = {.world         = cache->world,
                                      .seed          = cache->seed,
-                                     .radiance      = cache->next ? light_by_cache : light_by_path,
+                                     .radiance      = cache->next      ? light_by_cache
+                                                      : cache->shadows ? light_by_map
+                                                                       : light_by_path,
                                      .user          = cache,
                                      .worker_counts = cache->worker_counts};
     const uint64_t       item =
@@ -457,6 +486,14 @@ static assay_status make_record(assay_irradiance_cache *cache, const assay_cache
                                        assay_record_store_count(cache->store), cache->hemisphere);
     }
     return status ? status : assay_record_store_add(cache->store, &record);
+}
+
+assay_status assay_irradiance_cache_make(assay_irradiance_cache  *cache,
+                                         const assay_cache_point *point)
+{
+    const assay_status status = make_record(cache, point);
+    return status == ASSAY_ERR_MEMORY ? assay_fail_memory(cache->context, "the irradiance cache")
+                                      : status;
 }
 
 /* ---- filling ---- */

@@ -11,6 +11,7 @@
 #define ASSAY_RECORD_IRRADIANCE_CACHE_H
 
 #include "gather/gather.h"
+#include "gather/shadow_map.h"
 #include "record/record_store.h"
 
 /* What is known of the light where a gathering ray ends. */
@@ -19,6 +20,9 @@ typedef enum {
     ASSAY_SECONDARY_PATH,   /* a path goes on from there: all bounces, unbiased              */
     ASSAY_SECONDARY_CACHE   /* direct light, and a cache of its own for the rest [ward88]    */
 } assay_secondary;
+
+/* How direct light is shadowed where a gathering ray ends. */
+typedef enum { ASSAY_SHADOW_RAY, ASSAY_SHADOW_MAP } assay_shadow;
 
 #define ASSAY_CACHE_MAX_LEVELS 8
 
@@ -33,6 +37,8 @@ typedef struct {
     bool                    normal_gradient;            /* along the normal, too                */
     uint32_t                max_records;                /* a level                              */
     assay_secondary         secondary;
+    assay_shadow            shadow;      /* MAP with DIRECT alone                */
+    assay_shadow_settings   shadow_maps; /* of MAP                               */
     int                 levels; /* of CACHE: 1 ... ASSAY_CACHE_MAX_LEVELS; paths go on below   */
     assay_path_settings path;   /* bounces: of the image, so that 2 is one indirect bounce    */
 } assay_irradiance_cache_settings;
@@ -76,6 +82,11 @@ assay_status assay_irradiance_cache_create_beside(assay_irradiance_cache        
 assay_status assay_irradiance_cache_fill(assay_irradiance_cache *cache, const char *phase,
                                          uint64_t before, uint64_t total, size_t count,
                                          const assay_cache_point *points, uint32_t *limits_out);
+
+/* Makes a record at a point, whatever is known there: for those who know by other means what is
+ * missing.  Errors: as of filling. */
+assay_status assay_irradiance_cache_make(assay_irradiance_cache  *cache,
+                                         const assay_cache_point *point);
 
 /* What a look-up sums over: the records numbered below `limit` that contribute at a point.  The
  * list is the worker's, until its next look-up.  Errors: MEMORY. */

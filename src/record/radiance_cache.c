@@ -118,11 +118,13 @@ static assay_status create_parts(assay_radiance_cache *cache, assay_irradiance_c
     if (!cache->scratch) {
         return assay_fail_memory(cache->context, "the radiance cache");
     }
+    assay_record_rules widest                  = s->records.rules;
+    widest.a                                   = s->widest_a > widest.a ? s->widest_a : widest.a;
     const assay_radiance_turn_settings turning = {
         .way      = s->rotation,
         .steps    = s->rotation_steps,
         .sh_order = s->sh_order,
-        .tilt_max = assay_record_tilt_max(&s->records.rules),
+        .tilt_max = assay_record_tilt_max(&widest),
     };
     status = assay_irradiance_cache_create_beside(beside, &s->records, &companion, &cache->records);
     return status ? status
@@ -138,11 +140,13 @@ assay_status assay_radiance_cache_create(assay_context *context, assay_irradianc
     if (!cache) {
         return assay_fail_memory(context, "the radiance cache");
     }
-    cache->context                        = context;
-    cache->settings                       = *settings;
-    cache->workers                        = assay_context_threads(context);
-    cache->settings.records.layout.strata = ASSAY_STRATA_UNIFORM;
-    const assay_status status             = create_parts(cache, beside);
+    cache->context  = context;
+    cache->settings = *settings;
+    cache->workers  = assay_context_threads(context);
+    if (settings->records.layout.strata != ASSAY_STRATA_PLANE) {
+        cache->settings.records.layout.strata = ASSAY_STRATA_UNIFORM;
+    }
+    const assay_status status = create_parts(cache, beside);
     if (status != ASSAY_OK) {
         assay_radiance_cache_destroy(cache);
         return status;
@@ -191,11 +195,30 @@ static void move(const assay_radiance_cache *cache, uint32_t number, const assay
 
 static bool same(assay_vec3 a, assay_vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
+assay_status assay_radiance_cache_say(assay_radiance_cache *cache, uint32_t number,
+                                      assay_vec3 position, const assay_frame3 *here, int worker,
+                                      double *coefficients_out)
+{
+    const assay_record *record =
+        assay_record_store_at(assay_irradiance_cache_store(cache->records), number);
+    const assay_frame3 there = frame3_from_z(record->normal);
+    move(cache, number, &there, vec3_sub(position, record->position), coefficients_out);
+    return assay_radiance_cache_turn(cache, &there, here, worker, coefficients_out);
+}
+
+assay_status assay_radiance_cache_turn(assay_radiance_cache *cache, const assay_frame3 *from,
+                                       const assay_frame3 *to, int worker, double *coefficients)
+{
+    if (same(from->x, to->x) && same(from->y, to->y) && same(from->z, to->z)) {
+        return ASSAY_OK;
+    }
+    return assay_radiance_turn_apply(cache->turn, worker, from, to, coefficients);
+}
+
 assay_status assay_radiance_cache_look_up(assay_radiance_cache *cache, assay_vec3 position,
                                           const assay_frame3 *frame, uint32_t limit, int worker,
                                           double *coefficients_out, bool *found_out)
 {
-    const assay_record_store  *store = assay_irradiance_cache_store(cache->records);
     const assay_frame3         here  = frame3_from_z(frame->z);
     const assay_contributions *found = NULL;
     double                    *sum   = cache->scratch + (size_t)worker * 2 * cache->count;
@@ -209,13 +232,8 @@ assay_status assay_radiance_cache_look_up(assay_radiance_cache *cache, assay_vec
     }
     memset(sum, 0, cache->count * sizeof *sum);
     for (size_t k = 0; k < found->count && status == ASSAY_OK; k++) {
-        const assay_contribution *item   = &found->items[k];
-        const assay_record       *record = assay_record_store_at(store, item->number);
-        const assay_frame3        there  = frame3_from_z(record->normal);
-        move(cache, item->number, &there, vec3_sub(position, record->position), moved);
-        if (!same(record->normal, frame->z)) {
-            status = assay_radiance_turn_apply(cache->turn, worker, &there, &here, moved);
-        }
+        const assay_contribution *item = &found->items[k];
+        status = assay_radiance_cache_say(cache, item->number, position, &here, worker, moved);
         /* A running mean, as assay_record_store_interpolate has. */
         total += item->weight;
         const double share = item->weight / total;
@@ -223,9 +241,7 @@ assay_status assay_radiance_cache_look_up(assay_radiance_cache *cache, assay_vec
             sum[i] += share * (moved[i] - sum[i]);
         }
     }
-    if (status == ASSAY_OK && !(same(here.x, frame->x) && same(here.y, frame->y))) {
-        status = assay_radiance_turn_apply(cache->turn, worker, &here, frame, sum);
-    }
+    status = status ? status : assay_radiance_cache_turn(cache, &here, frame, worker, sum);
     if (status == ASSAY_OK) {
         memcpy(coefficients_out, sum, cache->count * sizeof *sum);
         *found_out = true;

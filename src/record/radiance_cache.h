@@ -23,7 +23,8 @@ typedef struct {
     assay_hsh_rotation_way          rotation;
     int rotation_steps; /* TABLE, DIGON: intervals up to the largest tilt at which a record counts
                          */
-    int sh_order; /* CONVERSION: of the SH between                                           */
+    int    sh_order; /* CONVERSION: of the SH between                                           */
+    double widest_a; /* turns serve records that count at this a, if it is more than theirs   */
 } assay_radiance_cache_settings;
 
 typedef struct assay_radiance_cache assay_radiance_cache;
@@ -54,6 +55,17 @@ bool assay_radiance_cache_has_gradients(const assay_radiance_cache *cache);
  * coefficients, and where the cache has gradients 3 numbers a coefficient.  Errors: MEMORY. */
 assay_status assay_radiance_cache_take_rows(assay_radiance_cache *cache, size_t rows,
                                             const double *coefficients, const double *gradients);
+
+/* What one record says of the radiance at a point, 3 rows of count, in the frame `here`, whose z is
+ * the normal there.  Errors: DOMAIN (no frame). */
+assay_status assay_radiance_cache_say(assay_radiance_cache *cache, uint32_t number,
+                                      assay_vec3 position, const assay_frame3 *here, int worker,
+                                      double *coefficients_out);
+
+/* Coefficients of a function, 3 rows of count, from one frame into another of the same z, in place.
+ * Errors: DOMAIN (no frame). */
+assay_status assay_radiance_cache_turn(assay_radiance_cache *cache, const assay_frame3 *from,
+                                       const assay_frame3 *to, int worker, double *coefficients);
 
 /* Coefficients of what arrives at a point, 3 rows of count, in the frame given (orthonormal, z the
  * normal), from the records numbered below `limit`.  *found_out false, and nothing else written:

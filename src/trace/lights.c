@@ -245,6 +245,22 @@ static bool sample_punctual(const assay_punctual_light *light, assay_vec3 point,
     return !rgb_is_black(out->radiance);
 }
 
+bool assay_lights_punctual(const assay_punctual_light *light, assay_vec3 point,
+                           assay_light_sample *sample_out)
+{
+    assay_light_sample sample = {0};
+    if (!sample_punctual(light, point, 1.0, &sample)) {
+        return false;
+    }
+    *sample_out = sample;
+    return true;
+}
+
+bool assay_lights_all_punctual(const assay_lights *lights)
+{
+    return lights->emitter_count == 0 && !lights->has_infinite;
+}
+
 /* Density of a constant background over the sphere, or over the half of it that is of use. */
 static double background_pdf(const assay_receiver *receiver)
 {

@@ -45,6 +45,13 @@ bool assay_lights_sample(const assay_lights *lights, const assay_receiver *recei
                          bool delta_only, double u_choice, double u1, double u2,
                          assay_light_sample *sample_out);
 
+/* What arrives from one punctual light, with pdf 1.  False: nothing. */
+bool assay_lights_punctual(const assay_punctual_light *light, assay_vec3 point,
+                           assay_light_sample *sample_out);
+
+/* Whether all light comes from punctual lights. */
+bool assay_lights_all_punctual(const assay_lights *lights);
+
 /* Density (1/sr) with which assay_lights_sample draws the direction to a point on an emissive
  * triangle at `distance` whose geometric normal makes cosine |cos_light|; 0 for a triangle that is
  * not a light. */

@@ -42,6 +42,7 @@ good_caches() { # METHOD SCENE SETTINGS ARRAY: the files are named after the met
 }
 good_caches irradiance-cache $box "$few" records/irradiance
 good_caches radiance-cache $shiny "$glossy" radiance_records/coefficient_gradient
+good_caches splat $shiny "$glossy --method splat" radiance_records/coefficient_gradient
 # ---- frames ----
 run render $box $few -o "$folder/frame-#.exr" --frames 0:1 --cache-out "$folder/frames"
 went_well && "$assay" diff "$folder/irradiance-cache-made.exr" "$folder/frame-0.exr" > /dev/null &&
@@ -68,6 +69,8 @@ refuses "a cache for other bounces" 2 "bounces" render $box $few -o "$out/a.exr"
     --cache-in "$cache"
 refuses "a cache for another secondary" 2 "secondary" render $box $few -o "$out/a.exr" \
     --secondary cache --cache-in "$cache"
+refuses "a cache by rays for the raster" 2 "gather" render $box $few -o "$out/a.exr" \
+    --gather raster --cache-in "$cache"
 refuses "a cache of another scene" 2 "scene.digest" render scenes/furnace/furnace.gltf $few \
     -o "$out/a.exr" --cache-in "$cache"
 refuses "a cache of other options" 2 "scene.digest" render $box $few -o "$out/a.exr" \
@@ -95,6 +98,15 @@ refuses "a reference that is no image" 2 "manifest" render $box $few -o "$out/a.
 refuses "r_min above r_max" 2 "r_min" render $box $few -o "$out/a.exr" --r-min 2 --r-max 1
 refuses "r_min_pixels above r_max_pixels" 2 "r_min_pixels" render $box $few -o "$out/a.exr" \
     --r-min-pixels 2 --r-max-pixels 1
+run render $box $few -o "$folder/raster.exr" --gather raster --raster-size 12 --missing ratio \
+    --shadow map --shadow-size 64 --shadow-taps 4 --secondary direct --cache-out "$folder/raster"
+went_well && ! "$assay" diff "$folder/made.exr" "$folder/raster.exr" > /dev/null
+result $? "a rasterised cache is another one"
+refuses "a cache of another raster" 2 "gather" render $box $few -o "$out/a.exr" --gather raster \
+    --missing border --shadow map --secondary direct --cache-in "$folder/raster"
+refuses "maps of shadow for paths" 2 "secondary" render $box $few -o "$out/a.exr" --shadow map
+refuses "taps that are no square" 2 "taps" render $box $few -o "$out/a.exr" --shadow map \
+    --secondary direct --shadow-taps 15
 bad_values() { # SETTINGS OPTION VALUE...: refused by the parameter's name
     settings=$1 option=$2
     shift 2
@@ -116,6 +128,11 @@ bad_values "$few" --levels 0 9 inf
 bad_values "$few" --max-records 0 inf
 bad_values "$few" --passes 0 3
 bad_values "$few" --secondary all
+bad_values "$few" --raster-size 1 nan
+bad_values "$few" --raster-fov 3.2 0 nan
+bad_values "$few" --missing all
+bad_values "$few" --gather both
+bad_values "$few" --shadow-size 8
 bad_values "$glossy" --order 0 21 -1 inf nan
 bad_values "$glossy" --sh-order 0 nan inf
 bad_values "$glossy" --rotation-steps 0 nan

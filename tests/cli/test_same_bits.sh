@@ -6,7 +6,7 @@ assay=${ASSAY_BIN:-build/release/assay}
 folder=$(mktemp -d) || exit 1
 trap 'rm -rf "$folder"' EXIT
 number=0
-scenes="cornell-box cornell-box-glossy spheres textured cached glossy-cached"
+scenes="cornell-box cornell-box-glossy spheres textured cached rasterised glossy-cached splatted"
 
 result() { # STATUS NAME
     number=$((number + 1))
@@ -56,8 +56,13 @@ render() { # PROGRAM SCENE OUT OPTIONS...
         --env-rotation-deg 40 --time 0.5 "$@" ;;
     cached) set -- scenes/cornell-box-glossy/cornell-box-glossy.gltf --method irradiance-cache \
         --theta-strata 6 --phi-strata 19 --a 0.4 --secondary cache "$@" ;;
+    rasterised) set -- scenes/colonnade/colonnade.gltf --method irradiance-cache --gather raster \
+        --raster-size 16 --secondary direct --shadow map --shadow-size 64 --a 0.9 "$@" ;;
     glossy-cached) set -- scenes/spheres/spheres.gltf --method radiance-cache --a 0.3 --order 5 \
         --grid 6 --nodes 12 --theta-strata 4 --phi-strata 10 --glossy-accuracy 0.8 "$@" ;;
+    splatted) set -- scenes/cornell-box-glossy/cornell-box-glossy.gltf --method splat --a 0.4 \
+        --order 8 --grid 6 --nodes 12 --theta-strata 4 --phi-strata 10 --glossy-accuracy 0.8 \
+        --bounds published "$@" ;;
     *) set -- "scenes/$scene/$scene.gltf" "$@" ;;
     esac
     "$program" render --size 24x24 --spp 3 --seed 5 -q -o "$out" "$@"

@@ -29,7 +29,7 @@ static void directions_lie_in_their_cells(void **state)
     (void)state;
     static const double numbers[] = {0.0, 0.25, 0.5, 0.875, 1.0 - 0x1p-53};
     for (int s = 0; s < KINDS; s++) {
-        const assay_hemisphere_layout layout = {7, 12, STRATA[s], false};
+        const assay_hemisphere_layout layout = {.theta = 7, .phi = 12, .strata = STRATA[s]};
         for (int i = 0; i < 7 * 12 * 25; i++) {
             const int        j = i / (12 * 25), k = i / 25 % 12;
             const double     u1 = numbers[i % 5], u2 = numbers[i / 5 % 5];
@@ -54,7 +54,7 @@ static void solid_angles(void **state)
     (void)state;
     assay_context *context = measure_context(1);
     for (int s = 0; s < KINDS; s++) {
-        const assay_hemisphere_layout layout     = {33, 5, STRATA[s], false};
+        const assay_hemisphere_layout layout     = {.theta = 33, .phi = 5, .strata = STRATA[s]};
         assay_hemisphere             *hemisphere = NULL;
         assert_int_equal(assay_hemisphere_create(context, &layout, &hemisphere), ASSAY_OK);
         double sum = 0.0;
@@ -75,10 +75,11 @@ static void solid_angles(void **state)
 static void starts_empty(void **state)
 {
     (void)state;
-    assay_context                *context    = measure_context(1);
-    const assay_hemisphere_layout layout     = {2, 2, ASSAY_STRATA_COSINE, true};
-    assay_hemisphere             *hemisphere = NULL;
-    assay_vec3                    g[3];
+    assay_context                *context = measure_context(1);
+    const assay_hemisphere_layout layout  = {
+         .theta = 2, .phi = 2, .strata = ASSAY_STRATA_COSINE, .jitter = true};
+    assay_hemisphere *hemisphere = NULL;
+    assay_vec3        g[3];
     assert_int_equal(assay_hemisphere_create(context, &layout, &hemisphere), ASSAY_OK);
     assert_true(assay_hemisphere_irradiance(hemisphere).r == 0.0);
     assert_true(assay_hemisphere_harmonic_mean(hemisphere, ASSAY_MEAN_UNIFORM) == INFINITY);
@@ -98,9 +99,12 @@ static void refuses(void **state)
 {
     (void)state;
     static const assay_hemisphere_layout bad[] = {
-        {1, 8, ASSAY_STRATA_COSINE, false},     {8, 1, ASSAY_STRATA_COSINE, false},
-        {4097, 8, ASSAY_STRATA_UNIFORM, false}, {8, 4097, ASSAY_STRATA_UNIFORM, false},
-        {-3, 8, ASSAY_STRATA_UNIFORM, false},   {8, 8, (assay_strata)2, false}};
+        {.theta = 1, .phi = 8, .strata = ASSAY_STRATA_COSINE},
+        {.theta = 8, .phi = 1, .strata = ASSAY_STRATA_COSINE},
+        {.theta = 4097, .phi = 8, .strata = ASSAY_STRATA_UNIFORM},
+        {.theta = 8, .phi = 4097, .strata = ASSAY_STRATA_UNIFORM},
+        {.theta = -3, .phi = 8, .strata = ASSAY_STRATA_UNIFORM},
+        {.theta = 8, .phi = 8, .strata = (assay_strata)3}};
     assay_context *context = measure_context(1);
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         assay_hemisphere *hemisphere = NULL;
@@ -123,7 +127,7 @@ static assay_status create_one(assay_context *context, void *user)
 static void survives_without_memory(void **state)
 {
     (void)state;
-    assay_hemisphere_layout layout = {4, 12, ASSAY_STRATA_COSINE, false};
+    assay_hemisphere_layout layout = {.theta = 4, .phi = 12, .strata = ASSAY_STRATA_COSINE};
     assert_int_equal(failing_each(create_one, &layout), 4);
 }
 

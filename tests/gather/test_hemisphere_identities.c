@@ -171,7 +171,7 @@ typedef struct {
 static assay_status project_once(assay_context *context, void *user)
 {
     const memory_case            *what       = user;
-    const assay_hemisphere_layout layout     = {3, 4, what->strata, false};
+    const assay_hemisphere_layout layout     = {.theta = 3, .phi = 4, .strata = what->strata};
     assay_hemisphere             *hemisphere = NULL;
     assay_basis                  *basis      = NULL;
     double                        c[3 * HARMONICS_COUNT];

@@ -233,6 +233,30 @@ static void camera_moves(void **state)
     }
 }
 
+/* A walk: splatted anew for every camera, and at most so many new records a frame. */
+static void camera_walks(void **state)
+{
+    (void)state;
+    const setting few[]     = {{"max_new_records", "12"}, {"uncovered", "black"}, {NULL, NULL}};
+    const setting printed[] = {{"variant", "published"}, {NULL, NULL}};
+    const setting clamped[] = {{"neighbour_clamp", "on"}, {NULL, NULL}};
+    check_chain("splat", NULL);
+    check_chain("splat", few);
+    check_chain("splat", printed);
+    check_chain("splat", clamped);
+    assay_context *context = measure_context(2);
+    assay_scene   *scene   = room(context, MOVES_CAMERA);
+    outcome        frames[FRAMES];
+    render_sequence(context, scene, "splat", few, NO_SEEDS, frames);
+    for (int k = 0; k < FRAMES; k++) {
+        /* Of irradiance and of radiance. */
+        assert_true(frames[k].stats.records <= (uint64_t)(k + 1) * 2 * 12);
+        assert_true(k == 0 || frames[k].stats.records > frames[k - 1].stats.records);
+    }
+    assay_scene_destroy(scene);
+    assay_context_destroy(context);
+}
+
 /* ---- something else that moves ---- */
 
 /* Each frame is what it is by itself. */
@@ -273,6 +297,7 @@ static void seeds_change(void **state)
     const uint64_t seeds[FRAMES] = {0, 1, 0};
     check_alone("irradiance-cache", MOVES_NOTHING, seeds);
     check_alone("radiance-cache", MOVES_NOTHING, seeds);
+    check_alone("splat", MOVES_NOTHING, seeds);
 }
 
 /* A method that keeps nothing gives the same frames, and says nothing of those before. */
@@ -336,9 +361,10 @@ static void bad_frames(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(camera_moves),         cmocka_unit_test(something_moves),
-        cmocka_unit_test(seeds_change),         cmocka_unit_test(path_keeps_nothing),
-        cmocka_unit_test(saved_after_the_last), cmocka_unit_test(bad_frames),
+        cmocka_unit_test(camera_moves),       cmocka_unit_test(camera_walks),
+        cmocka_unit_test(something_moves),    cmocka_unit_test(seeds_change),
+        cmocka_unit_test(path_keeps_nothing), cmocka_unit_test(saved_after_the_last),
+        cmocka_unit_test(bad_frames),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -23,7 +23,9 @@ enum { SIZE = 6 };
 
 static const setting COMMON[] = {{"spp", "2"},        {"a", "0.5"},           {"theta_strata", "3"},
                                  {"phi_strata", "6"}, {"max_records", "500"}, {NULL, NULL}};
-/* Of radiance-cache alone. */
+enum { METHODS = 3 };
+static const char *const METHOD[METHODS] = {"irradiance-cache", "radiance-cache", "splat"};
+/* Of all but the first. */
 static const setting GLOSSY[] = {
     {"order", "4"}, {"grid", "4"}, {"nodes", "8"}, {"glossy_accuracy", "0"}, {NULL, NULL}};
 
@@ -41,23 +43,36 @@ static const setting VARIANT[VARIANTS][MOST] = {
     {{"theta_strata", "2"}, {"phi_strata", "2"}, {"mean", "cosine"}, {NULL, NULL}},
 };
 
+static bool has(const assay_params *params, const char *name)
+{
+    const assay_param_desc *row = assay_params_table(params);
+    while (row->name && strcmp(row->name, name) != 0) {
+        row++;
+    }
+    return row->name != NULL;
+}
+
+/* Splatting knows no passes. */
 static void set_all(assay_params *params, const setting *settings)
 {
     for (const setting *s = settings; s->name; s++) {
-        assert_int_equal(assay_params_set(params, s->name, s->value), ASSAY_OK);
+        assert_true(has(params, s->name) || strcmp(s->name, "passes") == 0);
+        if (has(params, s->name)) {
+            assert_int_equal(assay_params_set(params, s->name, s->value), ASSAY_OK);
+        }
     }
 }
 
-static assay_status render(assay_context *context, assay_scene *scene, bool glossy, int variant,
-                           assay_image **image_out, assay_render_stats *stats)
+static assay_status render(assay_context *context, assay_scene *scene, int method_number,
+                           int variant, assay_image **image_out, assay_render_stats *stats)
 {
-    const char          *method  = glossy ? "radiance-cache" : "irradiance-cache";
+    const char          *method  = METHOD[method_number];
     assay_render_options options = assay_render_options_default();
     assay_params        *params  = NULL;
     options.width = options.height = SIZE;
     assert_int_equal(assay_method_params(context, method, &params), ASSAY_OK);
     set_all(params, COMMON);
-    if (glossy) {
+    if (method_number > 0) {
         set_all(params, GLOSSY);
     }
     set_all(params, VARIANT[variant]);
@@ -113,13 +128,12 @@ static void check(const char *what, assay_scene *(*make)(assay_context *context)
     assay_context *context = measure_context(1);
     assay_scene   *scene   = make(context);
     for (int variant = 0; variant < VARIANTS; variant++) {
-        for (int glossy = 0; glossy < 2; glossy++) {
+        for (int method = 0; method < METHODS; method++) {
             char               words[128];
             assay_render_stats stats = {0};
             assay_image       *image = NULL;
-            snprintf(words, sizeof words, "%s, variant %d%s", what, variant,
-                     glossy ? ", radiance-cache" : "");
-            if (render(context, scene, glossy, variant, &image, &stats) != ASSAY_OK) {
+            snprintf(words, sizeof words, "%s, variant %d, %s", what, variant, METHOD[method]);
+            if (render(context, scene, method, variant, &image, &stats) != ASSAY_OK) {
                 fail_msg("%s: %s", words, assay_context_error(context));
             }
             check_numbers(words, image);
@@ -324,15 +338,15 @@ static void scale_plays_no_part(void **state)
     (void)state;
     assay_context *context = measure_context(1);
     assay_scene   *plain   = scaled_room(context, 1.0);
-    for (int glossy = 0; glossy < 2; glossy++) {
+    for (int method = 0; method < METHODS; method++) {
         for (int variant = 0; variant < VARIANTS; variant++) {
             assay_image *image = NULL;
-            assert_int_equal(render(context, plain, glossy, variant, &image, NULL), ASSAY_OK);
+            assert_int_equal(render(context, plain, method, variant, &image, NULL), ASSAY_OK);
             assert_true(measure_mean(image, "IrradianceIndirect.G").value > 0.0);
             for (int sign = -1; sign <= 1; sign += 2) {
                 assay_scene *scaled = scaled_room(context, sign > 0 ? 0x1p30 : 0x1p-30);
                 assay_image *other  = NULL;
-                assert_int_equal(render(context, scaled, glossy, variant, &other, NULL), ASSAY_OK);
+                assert_int_equal(render(context, scaled, method, variant, &other, NULL), ASSAY_OK);
                 assert_true(measure_difference(image, other, "G") == 0.0);
                 assert_true(measure_difference(image, other, "IrradianceIndirect.G") == 0.0);
                 assay_image_destroy(other);
@@ -408,9 +422,9 @@ static void too_bright(void **state)
     scene_builder *b       = start_room(0, 3e38, METAL);
     scene_builder_camera(b, vec3(0.2, 0.1, 0.95), vec3(0, -0.4, -0.2), 1.0);
     assay_scene *scene = scene_builder_load(b, context, NULL);
-    for (int glossy = 0; glossy < 2; glossy++) {
+    for (int method = 0; method < METHODS; method++) {
         assay_image       *image  = NULL;
-        const assay_status status = render(context, scene, glossy, 0, &image, NULL);
+        const assay_status status = render(context, scene, method, 0, &image, NULL);
         assert_int_equal(status, ASSAY_ERR_DOMAIN);
         assert_non_null(strstr(assay_context_error(context), "too bright"));
         assert_null(image);

@@ -156,6 +156,28 @@ static void furnace(void **state)
     }
 }
 
+/* Each level has half the rays and 1.4 times the a of the one above, up to 1. */
+static void levels_relax(void **state)
+{
+    (void)state;
+    lit_world                       w        = lit_world_furnace(1);
+    assay_irradiance_cache_settings settings = lit_settings(16, 50);
+    settings.secondary                       = ASSAY_SECONDARY_CACHE;
+    settings.levels                          = 4;
+    settings.path.bounces                    = ASSAY_BOUNCES_INF;
+    settings.rules.a                         = 0.4;
+    static const double     a[]              = {0.4, 0.4 * M_SQRT2, 0.8, 1.0};
+    assay_irradiance_cache *cache = make_cache(&w, &settings), *level = cache;
+    for (int i = 0; i < 4; i++, level = assay_irradiance_cache_next(level)) {
+        const assay_record_rules *rules =
+            assay_record_store_rules(assay_irradiance_cache_store(level));
+        assert_true(fabs(rules->a - a[i]) < 1e-12);
+    }
+    assert_null(level);
+    assay_irradiance_cache_destroy(cache);
+    lit_world_close(&w);
+}
+
 /* ---- order and threads ---- */
 
 static void expect_same_records(assay_irradiance_cache *a, assay_irradiance_cache *b)
@@ -394,6 +416,7 @@ int main(void)
         cmocka_unit_test(radii_keep_their_limits),
         cmocka_unit_test(neighbours_are_clamped),
         cmocka_unit_test(gradients_limit_radii),
+        cmocka_unit_test(levels_relax),
         cmocka_unit_test(records_are_limited),
         cmocka_unit_test(tabellion_radius),
     };

@@ -52,7 +52,7 @@ lit_world lit_world_furnace(int threads)
 assay_irradiance_cache_settings lit_settings(int theta, int phi)
 {
     return (assay_irradiance_cache_settings){
-        .layout       = {theta, phi, ASSAY_STRATA_COSINE, false},
+        .layout       = {.theta = theta, .phi = phi, .strata = ASSAY_STRATA_COSINE},
         .rules        = {.a              = 0.2,
                          .weight         = ASSAY_WEIGHT_WARD,
                          .gradients      = ASSAY_GRADIENTS_BOTH,

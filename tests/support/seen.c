@@ -107,8 +107,9 @@ void seen_fill(const seen_scene *scene, uint64_t seed, assay_hemisphere *hemisph
 assay_hemisphere *seen_hemisphere(assay_context *context, const seen_scene *scene, int m, int n,
                                   assay_strata strata, bool jitter, uint64_t seed)
 {
-    const assay_hemisphere_layout layout     = {m, n, strata, jitter};
-    assay_hemisphere             *hemisphere = NULL;
+    const assay_hemisphere_layout layout = {
+        .theta = m, .phi = n, .strata = strata, .jitter = jitter};
+    assay_hemisphere *hemisphere = NULL;
     assert_int_equal(assay_hemisphere_create(context, &layout, &hemisphere), ASSAY_OK);
     seen_fill(scene, seed, hemisphere);
     return hemisphere;

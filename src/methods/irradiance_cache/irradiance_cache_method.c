@@ -8,7 +8,8 @@
 #include "methods/cache_params.h"
 #include "methods/cache_session.h"
 
-static const assay_param_desc PARAMS[] = {ASSAY_CACHE_PARAMS, ASSAY_CACHE_SESSION_PARAMS, {0}};
+static const assay_param_desc PARAMS[] = {
+    ASSAY_CACHE_PARAMS, ASSAY_CACHE_PASSES_PARAM, ASSAY_CACHE_SESSION_PARAMS, {0}};
 
 typedef struct {
     assay_context                  *context;
@@ -92,20 +93,15 @@ static assay_status radiance(void *user, const assay_cached_point *point, uint32
 {
     const cache_state *s       = user;
     const assay_rgb    lambert = assay_cached_point_lambert(point);
-    assay_rgb          sum     = rgb_grey(0.0);
-    if (!rgb_is_black(lambert)) {
-        const assay_status status = irradiance(user, point, limit, worker, &sum);
-        if (status != ASSAY_OK) {
-            return status;
-        }
-        sum = rgb_scale(rgb_mul(sum, lambert), ASSAY_INV_PI);
+    assay_rgb          e       = rgb_grey(0.0);
+    const assay_status status =
+        rgb_is_black(lambert) ? ASSAY_OK : irradiance(user, point, limit, worker, &e);
+    if (status == ASSAY_OK) {
+        *radiance_out =
+            rgb_add(assay_cached_point_sum(lambert, e, NULL, false),
+                    assay_cached_point_rest(s->world, &s->settings.path, point, random, counts));
     }
-    if (point->vertex.bsdf.model != ASSAY_BSDF_LAMBERT) {
-        sum = rgb_add(sum, assay_path_indirect(s->world, &s->settings.path, &point->vertex, lambert,
-                                               random, counts));
-    }
-    *radiance_out = sum;
-    return ASSAY_OK;
+    return status;
 }
 
 static assay_status picture(void *user, const assay_cached_point *point, uint32_t limit, int worker,

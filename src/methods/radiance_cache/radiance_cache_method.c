@@ -11,40 +11,13 @@
 #include "core/numerics.h"
 #include "methods/cache_params.h"
 #include "methods/cache_session.h"
-#include "methods/radiance_cache/glossy_materials.h"
-#include "record/radiance_cache.h"
+#include "methods/radiance_params.h"
 
-enum { MOST_ORDER = 20 };
-
-static const assay_param_desc PARAMS[] = {
-    ASSAY_CACHE_PARAMS,
-    {"order", ASSAY_PARAM_INT, "", "10", 1, MOST_ORDER, NULL,
-     "Order n of radiance and BRDFs in hemispherical harmonics: n^2 coefficients.",
-     "[gautron06] 4.7"},
-    {"coefficient_gradient", ASSAY_PARAM_CHOICE, "", "walls", 0, 0, "none|points|walls",
-     "Translational gradients of the coefficients: none, of points that keep their radiance, or of "
-     "walls that move before one another.",
-     "[krivanek05], [krivanek05b]"},
-    {"rotation", ASSAY_PARAM_CHOICE, "", "table", 0, 0, "exact|table|conversion|digon|analytical",
-     "How coefficients pass into the frame of another normal.", "[gautron06] 3.4"},
-    {"rotation_steps", ASSAY_PARAM_INT, "", "16", 1, 1024, NULL,
-     "Matrices between which rotation=table and digon interpolate, up to the largest tilt at which "
-     "a record counts.",
-     "[gautron06] 3.4.2"},
-    {"sh_order", ASSAY_PARAM_INT, "", "15", 1, ASSAY_BASIS_MAX_ORDER, NULL,
-     "Order of the spherical harmonics of rotation=conversion.", "[gautron06] 3.4.1"},
-    {"glossy_accuracy", ASSAY_PARAM_REAL, "", "0.97", 0, 1, NULL,
-     "A glossy material is cached where the order holds this share of its lobe's energy at 45 "
-     "degrees, else it gets paths.",
-     "[gautron06] eq. 3.32"},
-    {"grid", ASSAY_PARAM_INT, "texels", "32", 2, 512, NULL,
-     "Side of the paraboloid grid of outgoing directions.", "[gautron06] eq. 3.35, 3.36"},
-    {"nodes", ASSAY_PARAM_INT, "", "48", 8, 512, NULL,
-     "Gauss nodes in the polar angle (twice as many in azimuth) for a BRDF's coefficients.",
-     "[gautron06] eq. 3.34"},
-    ASSAY_CACHE_SESSION_PARAMS,
-    {0},
-};
+static const assay_param_desc PARAMS[] = {ASSAY_CACHE_PARAMS,
+                                          ASSAY_CACHE_PASSES_PARAM,
+                                          ASSAY_RADIANCE_PARAMS,
+                                          ASSAY_CACHE_SESSION_PARAMS,
+                                          {0}};
 
 /* What had been made when a point of the wave was served: their sum names the pair, as neither ever
  * falls. */
@@ -61,10 +34,9 @@ typedef struct {
 typedef struct {
     assay_context                *context;
     const assay_world            *world;
+    assay_radiance_params         params;
     assay_radiance_cache_settings settings;
     assay_cached_image_settings   image;
-    assay_material_grid_settings  grid;
-    double                        glossy_accuracy;
     assay_irradiance_cache       *irradiance;
     assay_radiance_cache         *radiance; /* NULL: no material is within reach */
     assay_cache_session           session;
@@ -113,25 +85,18 @@ static assay_status create(assay_context *context, const assay_params *params, v
     if (!state) {
         return assay_fail_memory(context, "the radiance cache");
     }
-    state->context         = context;
-    state->glossy_accuracy = assay_params_real(params, "glossy_accuracy");
-    state->settings        = (assay_radiance_cache_settings){
-               .order    = assay_params_int(params, "order"),
-               .gradient = (assay_coefficient_gradient)assay_params_choice(params, "coefficient_gradient"),
-               .rotation = (assay_hsh_rotation_way)assay_params_choice(params, "rotation"),
-               .rotation_steps = assay_params_int(params, "rotation_steps"),
-               .sh_order       = assay_params_int(params, "sh_order"),
-    };
-    state->grid = (assay_material_grid_settings){
-        .side           = assay_params_int(params, "grid"),
-        .nodes          = assay_params_int(params, "nodes"),
-        .beyond_lambert = true,
-    };
-    assay_status status = assay_material_grids_check_work(context, state->grid.side,
-                                                          state->grid.nodes, state->settings.order);
+    state->context      = context;
+    assay_status status = assay_radiance_params_read(context, params, &state->params);
+    state->settings     = state->params.cache;
     status =
         status ? status
                : assay_cache_params_read(context, params, &state->settings.records, &state->image);
+    if (status == ASSAY_OK && state->settings.gradient == ASSAY_COEFFICIENT_GRADIENT_POINTS &&
+        state->settings.records.layout.strata == ASSAY_STRATA_PLANE) {
+        status = assay_fail(context, ASSAY_ERR_ARGUMENT,
+                            "parameter 'coefficient_gradient' is points, which gather=raster does "
+                            "not have");
+    }
     status = status ? status : assay_cache_session_create(context, params, &state->session);
     if (status != ASSAY_OK) {
         destroy(state);
@@ -157,21 +122,6 @@ static assay_status make_desks(cache_state *s)
     return have ? ASSAY_OK : assay_fail_memory(s->context, "the radiance cache");
 }
 
-/* The basis of the choice of materials is that of the cache, which comes only where it is needed:
- * its rotations may take seconds. */
-static assay_status make_materials(cache_state *s)
-{
-    assay_basis *basis  = NULL;
-    assay_status status = assay_basis_create(s->context, ASSAY_BASIS_HSH, s->settings.order,
-                                             ASSAY_CONVENTION_THESIS, &basis);
-    s->grid.basis       = basis;
-    status              = status ? status
-                                 : glossy_materials_make(s->context, s->world->scene, &s->grid,
-                                                         s->glossy_accuracy, &s->materials);
-    assay_basis_destroy(basis);
-    return status;
-}
-
 static assay_cache_set caches_of(const cache_state *s)
 {
     return (assay_cache_set){&s->settings.records, &s->settings, s->irradiance, s->radiance};
@@ -193,7 +143,10 @@ static assay_status prepare(void *state, const assay_frame *frame)
 {
     cache_state *s      = state;
     s->world            = frame->world;
-    assay_status status = s->materials.grids ? ASSAY_OK : make_materials(s);
+    assay_status status = s->materials.grids
+                              ? ASSAY_OK
+                              : assay_radiance_params_materials(s->context, frame->world->scene,
+                                                                &s->params, &s->materials);
     if (status == ASSAY_OK && frame->frames_before == 0) {
         drop_caches(s);
         status = make_caches(s, frame);
@@ -298,11 +251,6 @@ static assay_status gloss(const cache_state *s, const assay_material_grids *grid
                                                                 d->light, d->scratch, gloss_out);
 }
 
-static assay_rgb not_negative(assay_rgb c)
-{
-    return rgb(c.r > 0.0 ? c.r : 0.0, c.g > 0.0 ? c.g : 0.0, c.b > 0.0 ? c.b : 0.0);
-}
-
 /* What the caches say of the light towards the viewer; *found_out false, and the Lambertian's share
  * alone, where the rest of it is none of theirs. */
 static assay_status cached_radiance(const cache_state *s, const assay_cached_point *point,
@@ -312,19 +260,18 @@ static assay_status cached_radiance(const cache_state *s, const assay_cached_poi
     const made_so_far           made    = made_within(s, limit);
     const assay_material_grids *grids   = grids_at(s, point);
     const assay_rgb             lambert = assay_cached_point_lambert(point);
-    assay_rgb                   sum = rgb_grey(0.0), rest = rgb_grey(0.0);
+    const bool                  clamp   = s->settings.records.rules.clamp_negative;
+    assay_rgb                   e = rgb_grey(0.0), rest = rgb_grey(0.0);
     assay_status                status = ASSAY_OK;
     bool                        found  = false;
     if (!rgb_is_black(lambert)) {
-        status = irradiance_within(s, point, made.irradiance, worker, &sum);
-        sum    = rgb_scale(rgb_mul(sum, lambert), ASSAY_INV_PI);
+        status = irradiance_within(s, point, made.irradiance, worker, &e);
     }
     if (grids && status == ASSAY_OK) {
         status = gloss(s, grids, point, made.radiance, worker, &rest, &found);
     }
     if (status == ASSAY_OK) {
-        sum           = rgb_add(sum, rest);
-        *radiance_out = found && s->settings.records.rules.clamp_negative ? not_negative(sum) : sum;
+        *radiance_out = assay_cached_point_sum(lambert, e, found ? &rest : NULL, clamp);
         *found_out    = found;
     }
     return status;
@@ -341,10 +288,9 @@ static assay_status radiance(void *user, const assay_cached_point *point, uint32
     if (status != ASSAY_OK) {
         return status;
     }
-    if (!found && point->vertex.bsdf.model != ASSAY_BSDF_LAMBERT) {
-        const assay_rgb lambert = assay_cached_point_lambert(point);
-        sum = rgb_add(sum, assay_path_indirect(s->world, &s->settings.records.path, &point->vertex,
-                                               lambert, random, counts));
+    if (!found) {
+        sum = rgb_add(sum, assay_cached_point_rest(s->world, &s->settings.records.path, point,
+                                                   random, counts));
     }
     *radiance_out = sum;
     return ASSAY_OK;

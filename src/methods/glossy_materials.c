@@ -4,7 +4,7 @@
  *
  * The angle of 45 degrees is the mean angle of directions drawn by their cosine; beyond it lobes
  * meet the horizon, where every basis errs more, and grazing views are rare. */
-#include "methods/radiance_cache/glossy_materials.h"
+#include "methods/glossy_materials.h"
 
 #include "core/alloc.h"
 #include "core/context.h"

@@ -1,0 +1,200 @@
+/* splat_method.c - the method: parameters, caches, and an image by splatting. */
+#include "methods/splat/splat_method.h"
+
+#include "core/alloc.h"
+#include "core/context.h"
+#include "methods/cache_params.h"
+#include "methods/radiance_params.h"
+#include "methods/splat/splat_image.h"
+
+static const assay_param_desc PARAMS[] = {
+    ASSAY_CACHE_PARAMS,
+    ASSAY_RADIANCE_PARAMS,
+    {"gbuffer", ASSAY_PARAM_CHOICE, "", "samples", 0, 0, "samples|centres",
+     "Points that are splatted on: every camera sample, one after the other, or the pixels' "
+     "centres "
+     "alone, whose indirect light all samples of a pixel take.",
+     "[gautron06] algorithm 4"},
+    {"bounds", ASSAY_PARAM_CHOICE, "", "exact", 0, 0, "exact|published",
+     "Pixels that a record is splatted on: bounds of its sphere that lose none, or a square at the "
+     "depth of its centre, whose losses are counted.",
+     "[gautron06] eq. 4.4, [class08]"},
+    {"variant", ASSAY_PARAM_CHOICE, "", "corrected", 0, 0, "corrected|published",
+     "Step 5 of algorithm 4: new records alone, or, as printed, all of them once more on top of "
+     "the old ones.",
+     "[gautron06] algorithm 4"},
+    {"splat_a", ASSAY_PARAM_REAL, "", "0", 0, 1e3, NULL,
+     "Accuracy with which the records are splatted when they are all there; 0: a.",
+     "[gautron06] fig. 4.12"},
+    {"max_new_records", ASSAY_PARAM_INT, "records", "1000000000", 0, 1e9, NULL,
+     "Records that a frame may make, of a kind; what they do not reach is left to `uncovered`.",
+     "[gautron06] fig. 4.11"},
+    {"uncovered", ASSAY_PARAM_CHOICE, "", "nearest", 0, 0, "nearest|black",
+     "Irradiance where no record reaches: the nearest record's, or none, as published.", ""},
+    {"dump_batch", ASSAY_PARAM_INT, "records", "0", 0, 1e9, NULL,
+     "The dump has the splat buffer after every so many new records; 0: before and after all.", ""},
+    ASSAY_CACHE_SESSION_PARAMS,
+    {0},
+};
+
+typedef struct {
+    assay_context                *context;
+    assay_radiance_params         params;
+    assay_radiance_cache_settings settings;
+    assay_cached_image_settings   image_settings;
+    assay_cache_session           session;
+    splat_image                   image;
+    glossy_materials              materials;
+    assay_irradiance_cache       *irradiance;
+    assay_radiance_cache         *radiance; /* NULL: no material is within reach */
+} splat_state;
+
+static void drop_caches(splat_state *s)
+{
+    assay_radiance_cache_destroy(s->radiance);
+    assay_irradiance_cache_destroy(s->irradiance);
+    s->radiance   = NULL;
+    s->irradiance = NULL;
+}
+
+static void destroy(void *state)
+{
+    splat_state *s = state;
+    if (s) {
+        splat_image_close(&s->image);
+        drop_caches(s);
+        glossy_materials_release(&s->materials);
+        assay_cache_session_release(&s->session);
+        assay_release(s->context, s);
+    }
+}
+
+static void read_own_params(const assay_params *params, splat_state *s)
+{
+    s->image.uncovered        = (splat_uncovered)assay_params_choice(params, "uncovered");
+    s->image.centres          = assay_params_choice(params, "gbuffer") == 1;
+    s->image_settings.centres = s->image.centres;
+    s->settings.widest_a      = assay_params_real(params, "splat_a");
+    s->image.rules            = (splat_rules){
+                   .variant     = (splat_variant)assay_params_choice(params, "variant"),
+                   .bounds      = (assay_splat_bounds_kind)assay_params_choice(params, "bounds"),
+                   .accuracy    = assay_params_real(params, "splat_a"),
+                   .max_records = s->settings.records.max_records,
+                   .max_new     = (uint32_t)assay_params_int(params, "max_new_records"),
+                   .again       = s->settings.records.neighbour_clamp,
+                   .batch       = (uint32_t)assay_params_int(params, "dump_batch"),
+    };
+}
+
+static assay_status create(assay_context *context, const assay_params *params, void **state_out)
+{
+    splat_state *s = assay_allocate(context, 1, sizeof *s);
+    if (!s) {
+        return assay_fail_memory(context, "splatting");
+    }
+    s->context          = context;
+    assay_status status = assay_radiance_params_read(context, params, &s->params);
+    s->settings         = s->params.cache;
+    status =
+        status ? status
+               : assay_cache_params_read(context, params, &s->settings.records, &s->image_settings);
+    status = status ? status : assay_cache_session_create(context, params, &s->session);
+    if (status != ASSAY_OK) {
+        destroy(s);
+        return status;
+    }
+    read_own_params(params, s);
+    *state_out = s;
+    return ASSAY_OK;
+}
+
+/* Without radiance records a saved cache is one of irradiance-cache, with them of radiance-cache.
+ */
+static assay_cache_set caches_of(const splat_state *s)
+{
+    return (assay_cache_set){&s->settings.records, s->radiance ? &s->settings : NULL, s->irradiance,
+                             s->radiance};
+}
+
+static assay_status make_caches(splat_state *s, const assay_frame *frame)
+{
+    const assay_status status = assay_irradiance_cache_create(frame->world, &s->settings.records,
+                                                              frame->seed, &s->irradiance);
+    return status || !s->materials.any
+               ? status
+               : assay_radiance_cache_create(s->context, s->irradiance, &s->settings, &s->radiance);
+}
+
+/* Materials are the same for all frames. */
+static assay_status prepare(void *state, const assay_frame *frame)
+{
+    splat_state *s      = state;
+    assay_status status = s->materials.grids
+                              ? ASSAY_OK
+                              : assay_radiance_params_materials(s->context, frame->world->scene,
+                                                                &s->params, &s->materials);
+    if (status == ASSAY_OK && frame->frames_before == 0) {
+        drop_caches(s);
+        status = make_caches(s, frame);
+    }
+    const assay_cache_set caches = caches_of(s);
+    return status ? status : assay_cache_session_begin(&s->session, frame, &caches);
+}
+
+static void report(const splat_state *s)
+{
+    const splat_image *image     = &s->image;
+    const uint64_t     unreached = splat_image_unreached(image);
+    assay_inform(s->context, ASSAY_LOG_INFO,
+                 "splat: %u irradiance and %u radiance records were made this time",
+                 image->diffuse.made, image->glossy.made);
+    if (image->lost > 0) {
+        assay_inform(s->context, ASSAY_LOG_WARNING,
+                     "splat: bounds=published lost %llu contributions of records to pixels",
+                     (unsigned long long)image->lost);
+    }
+    if (unreached > 0) {
+        assay_inform(s->context, ASSAY_LOG_WARNING,
+                     "splat: %llu looks at pixels that no record reaches (max_new_records, "
+                     "max_records, splat_a, bounds, or records that shrank): %s",
+                     (unsigned long long)unreached,
+                     image->uncovered == SPLAT_NEAREST ? "answered by the nearest record"
+                                                       : "black");
+    }
+}
+
+static assay_status render(void *state, const assay_frame *frame, assay_film *film,
+                           assay_ray_counts *counts)
+{
+    splat_state          *s      = state;
+    const assay_cache_set caches = caches_of(s);
+    s->image.context             = s->context;
+    s->image.frame               = frame;
+    s->image.caches              = &caches;
+    s->image.materials           = &s->materials;
+    s->image.session             = &s->session;
+    s->image.path                = &s->settings.records.path;
+    assay_status status          = splat_image_open(&s->image);
+    if (status == ASSAY_OK) {
+        const assay_cached_light light = splat_image_light(&s->image);
+        status = assay_cache_session_render(&s->session, frame, &caches, &s->image_settings, &light,
+                                            film, counts);
+    }
+    if (status == ASSAY_OK) {
+        report(s);
+    }
+    splat_image_close(&s->image);
+    return status;
+}
+
+const assay_method assay_method_splat = {
+    .name    = "splat",
+    .summary = "Radiance cache splatting: irradiance and radiance records spread over the pixels "
+               "that they reach.",
+    .params  = PARAMS,
+    .keeps_light = true,
+    .create      = create,
+    .prepare     = prepare,
+    .render      = render,
+    .destroy     = destroy,
+};
