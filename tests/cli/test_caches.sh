@@ -100,7 +100,7 @@ refuses "r_min_pixels above r_max_pixels" 2 "r_min_pixels" render $box $few -o "
     --r-min-pixels 2 --r-max-pixels 1
 run render $box $few -o "$folder/raster.exr" --gather raster --raster-size 12 --missing ratio \
     --shadow map --shadow-size 64 --shadow-taps 4 --secondary direct --cache-out "$folder/raster"
-went_well && ! "$assay" diff "$folder/made.exr" "$folder/raster.exr" > /dev/null
+went_well && ! "$assay" diff "$folder/irradiance-cache-made.exr" "$folder/raster.exr" > /dev/null
 result $? "a rasterised cache is another one"
 refuses "a cache of another raster" 2 "gather" render $box $few -o "$out/a.exr" --gather raster \
     --missing border --shadow map --secondary direct --cache-in "$folder/raster"

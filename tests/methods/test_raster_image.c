@@ -112,8 +112,8 @@ static void levels_of_planes(void **state)
     settings.secondary                          = ASSAY_SECONDARY_CACHE;
     settings.levels                             = 2;
     settings.path.bounces                       = 3;
-    const assay_cache_point point               = lit_point(vec3(0.3123, -1, 0.1277), vec3(0, 1, 0));
-    assay_irradiance_cache *cache               = NULL;
+    const assay_cache_point point = lit_point(vec3(0.3123, -1, 0.1277), vec3(0, 1, 0));
+    assay_irradiance_cache *cache = NULL;
     assert_int_equal(assay_irradiance_cache_create(w.world, &settings, 3, &cache), ASSAY_OK);
     assert_int_equal(assay_irradiance_cache_fill(cache, NULL, 0, 0, 1, &point, NULL), ASSAY_OK);
     const assay_record *record = assay_record_store_at(assay_irradiance_cache_store(cache), 0);

@@ -15,7 +15,7 @@
 
 #include "assay/render.h"
 
-enum { SIDE = 48, CHANNELS = 3, MOST_ACCURACIES = 8, COLUMNS = 4 };
+enum { CHANNELS = 3, MOST_ACCURACIES = 8, COLUMNS = 4 };
 
 static const char *const ACCURACY[] = {"0.4", "0.2", "0.1", "0.05"};
 
@@ -31,6 +31,8 @@ typedef struct {
     const char *layer;     /* that is compared                                            */
     int         material;  /* over its pixels alone; -1: all                              */
     bool        diffuse;   /* --force-diffuse                                             */
+    int         side;      /* pixels                                                      */
+    int         rows;      /* of ACCURACY                                                 */
 } table;
 
 #define CORNELL "scenes/cornell-box/cornell-box.gltf"
@@ -40,17 +42,21 @@ typedef struct {
 
 static const table TABLES[] = {
     {"Cornell box", "irradiance-cache", CORNELL, NULL, "inf", "1024", "IrradianceIndirect", -1,
-     true},
-    {"Cornell box", "irradiance-cache", CORNELL, NULL, "inf", "1024", "Indirect", -1, true},
+     true, 48, 4},
+    {"Cornell box", "irradiance-cache", CORNELL, NULL, "inf", "1024", "Indirect", -1, true, 48, 4},
     {"Cornell box, one bounce", "irradiance-cache", CORNELL, NULL, "2", "1024",
-     "IrradianceIndirect", -1, true},
+     "IrradianceIndirect", -1, true, 48, 4},
     {"Sponza, atrium", "irradiance-cache", SPONZA, "atrium", "inf", "512", "IrradianceIndirect", -1,
-     true},
-    {"Sponza, atrium", "irradiance-cache", SPONZA, "atrium", "inf", "512", "Indirect", -1, true},
-    {"Kitchen", "irradiance-cache", KITCHEN, NULL, "inf", "512", "IrradianceIndirect", -1, true},
-    {"Kitchen", "irradiance-cache", KITCHEN, NULL, "inf", "512", "Indirect", -1, true},
-    {"Glossy box, its wall", "radiance-cache", GLOSSY, NULL, "inf", "2048", "Indirect", 4, false},
-    {"Glossy box, all of it", "radiance-cache", GLOSSY, NULL, "inf", "2048", "Indirect", -1, false},
+     true, 32, 3},
+    {"Sponza, atrium", "irradiance-cache", SPONZA, "atrium", "inf", "512", "Indirect", -1, true, 32,
+     3},
+    {"Kitchen", "irradiance-cache", KITCHEN, NULL, "inf", "512", "IrradianceIndirect", -1, true, 32,
+     3},
+    {"Kitchen", "irradiance-cache", KITCHEN, NULL, "inf", "512", "Indirect", -1, true, 32, 3},
+    {"Glossy box, its wall", "radiance-cache", GLOSSY, NULL, "inf", "2048", "Indirect", 4, false,
+     48, 4},
+    {"Glossy box, all of it", "radiance-cache", GLOSSY, NULL, "inf", "2048", "Indirect", -1, false,
+     48, 4},
 };
 
 enum { TABLE_COUNT = sizeof TABLES / sizeof TABLES[0] };
@@ -66,12 +72,12 @@ static void require(assay_context *context, assay_status status)
 /* ---- images ---- */
 
 typedef struct {
-    assay_context *context;
-    assay_scene   *scene;
-    const table   *about;
-    assay_image   *reference[2];
-    int            rows; /* accuracies */
-    const char   **accuracy;
+    assay_context     *context;
+    assay_scene       *scene;
+    const table       *about;
+    assay_image       *reference[2];
+    int                rows; /* accuracies */
+    const char *const *accuracy;
 } study;
 
 static void set(const study *s, assay_params *params, const char *name, const char *value)
@@ -85,7 +91,7 @@ static assay_image *render(const study *s, const char *method, assay_params *par
     assay_render_options options = assay_render_options_default();
     assay_render_stats   stats;
     assay_image         *image = NULL;
-    options.width = options.height = SIDE;
+    options.width = options.height = s->about->side;
     options.camera                 = s->about->camera;
     options.layers = strcmp(s->about->method, "radiance-cache") == 0 ? "split,gbuffer"
                                                                      : "split,irradiance,gbuffer";
@@ -141,6 +147,7 @@ static const float *channel_of(const assay_image *image, const char *layer, int 
 static verdict judge(const study *s, const table *about, const assay_image *image)
 {
     assay_channel id;
+    const int     pixels = about->side * about->side;
     double        sum = 0.0, squares = 0.0, mean_x = 0.0, mean_truth = 0.0, count = 0.0;
     if (!assay_image_find_channel(s->reference[0], "MaterialId", &id)) {
         exit(1);
@@ -152,7 +159,7 @@ static verdict judge(const study *s, const table *about, const assay_image *imag
         double       mean = 0.0;
         double       seen = 0.0;
         for (int pass = 0; pass < 2; pass++) {
-            for (int i = 0; i < SIDE * SIDE; i++) {
+            for (int i = 0; i < pixels; i++) {
                 if (about->material >= 0 && id.data.u32[i] != (uint32_t)about->material) {
                     continue;
                 }
@@ -268,9 +275,6 @@ int main(int count, char **argv)
     for (int i = 2; i < count && rows < MOST_ACCURACIES; i++) {
         accuracy[rows++] = argv[i];
     }
-    for (size_t i = 0; i < sizeof ACCURACY / sizeof ACCURACY[0] && count <= 2; i++) {
-        accuracy[rows++] = ACCURACY[i];
-    }
     if (assay_context_create(&options, &context) != ASSAY_OK) {
         return 1;
     }
@@ -278,7 +282,10 @@ int main(int count, char **argv)
         const bool done =
             i > 0 && same_scene(&TABLES[i], &TABLES[i - 1]) && strstr(TABLES[i - 1].name, wanted);
         if (strstr(TABLES[i].name, wanted) && !done) {
-            study s = {.context = context, .about = &TABLES[i], .rows = rows, .accuracy = accuracy};
+            study s = {.context  = context,
+                       .about    = &TABLES[i],
+                       .rows     = rows ? rows : TABLES[i].rows,
+                       .accuracy = rows ? accuracy : ACCURACY};
             work_on(&s, &TABLES[i], wanted);
         }
     }
