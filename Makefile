@@ -192,7 +192,8 @@ figures: all ## draw the pictures of docs/methods again
 	   $(BUILD)/assay basis plot --accuracy --lobe ward:0.2,0.5@$$t --size 560 -o $(FIGURES)/accuracy-ward-$$t.png; done; \
 	 for f in "1 0" "1 1" "2 0" "2 1" "2 2" "3 1"; do set -- $$f; \
 	   $(BUILD)/assay basis plot --basis hsh --l $$1 --m $$2 --size 200 -o $(FIGURES)/hsh-$$1-$$2.png; done; \
-	 draw() { name=$$1 method=$${1%%/*}; shift; $(BUILD)/assay render scenes/cornell-box/cornell-box.gltf \
+	 box=scenes/cornell-box/cornell-box.gltf; \
+	 draw() { name=$$1 method=$${1%%/*}; shift; $(BUILD)/assay render $$box \
 	   -q --size 280x280 --layers color -m $$method --exposure 1 -o $(BUILD)/figure.exr \
 	   --png $(FIGURES)/$$(echo $$name | tr / -).png "$$@"; }; \
 	 draw irradiance-cache/records --debug records --a 0.3 --r-min-pixels 4 --spp 1; \
@@ -202,9 +203,11 @@ figures: all ## draw the pictures of docs/methods again
 	 draw irradiance-cache/two-passes --passes 2 $$coarse; \
 	 draw splat/one-pass $$coarse; \
 	 walk="--a 0.3 --r-min-pixels 4 --spp 4 --gbuffer centres"; \
-	 draw splat/walk-# --frames 0:3 --max-new-records 300 --uncovered black $$walk; \
 	 draw splat/a-small --splat-a 0.2 --uncovered black $$walk; \
-	 draw splat/a-large --splat-a 0.9 --uncovered black $$walk
+	 draw splat/a-large --splat-a 0.9 --uncovered black $$walk; \
+	 mkdir -p $(BUILD)/walk; cp $${box%gltf}bin $(BUILD)/walk; \
+	 sed -f $(FIGURES)/walk.sed $$box > $(BUILD)/walk/walk.gltf; box=$(BUILD)/walk/walk.gltf; \
+	 draw splat/walk-# --frames 0:3 --fps 4 --max-new-records 300 --uncovered black $$walk
 
 # ---- order in the house ----
 layers: ## check that every include follows src/layers.txt
