@@ -88,10 +88,12 @@ assay_status assay_scene_build_shapes(assay_scene *scene, const char *file)
     const size_t triangles = (size_t)sum.triangles;
     scene->shapes          = assay_allocate(scene->context, sum.shapes, sizeof *scene->shapes);
     scene->positions = assay_allocate(scene->context, sum.vertices, 3 * sizeof *scene->positions);
+    scene->vertices  = assay_allocate(scene->context, sum.vertices, sizeof *scene->vertices);
     scene->indices   = assay_allocate(scene->context, triangles, 3 * sizeof *scene->indices);
     scene->triangle_shape =
         assay_allocate(scene->context, triangles, sizeof *scene->triangle_shape);
-    if (!scene->shapes || !scene->positions || !scene->indices || !scene->triangle_shape) {
+    if (!scene->shapes || !scene->positions || !scene->vertices || !scene->indices ||
+        !scene->triangle_shape) {
         return assay_fail_memory(scene->context, "the scene's triangles");
     }
     for (uint32_t i = 0; i < scene->node_count && status == ASSAY_OK; i++) {

@@ -18,6 +18,9 @@ void assay_scene_animate(assay_scene *scene, double seconds);
 /* Evaluates everything at a time (s).  Errors: FORMAT (not finite), with `file` in the message. */
 assay_status assay_scene_evaluate(assay_scene *scene, double seconds);
 
+/* The last step of it: scene->vertices from positions, normals and uv. */
+void assay_scene_join_vertices(assay_scene *scene);
+
 /* Places cameras and punctual lights by the nodes' current worlds, and the camera that frames the
  * scene where there is none. */
 void assay_scene_place_cameras(assay_scene *scene);

@@ -119,6 +119,14 @@ typedef struct {
 
 /* ---- evaluated ---- */
 
+/* What a hit asks of a vertex, side by side: 32 bytes, so that a triangle is read from three places
+ * of memory and not from nine. */
+typedef struct {
+    float position[3]; /* world, m                                    */
+    float normal[3];   /* world, unit; 0 where the shape has none     */
+    float uv[2];       /* the first set; 0 where the shape has none   */
+} assay_world_vertex;
+
 /* A primitive of a node: a run of triangles and vertices with one material. */
 typedef struct {
     uint32_t               first_triangle, triangle_count;
@@ -196,6 +204,7 @@ struct assay_scene {
     assay_shape          *shapes;
     float                *positions;      /* vertex_count * 3, world, m                         */
     uint32_t             *indices;        /* triangle_count * 3, into positions                 */
+    assay_world_vertex   *vertices;       /* vertex_count: the same again, and more             */
     uint32_t             *triangle_shape; /* triangle_count                                     */
     assay_punctual_light *punctual;
     assay_camera         *world_cameras;

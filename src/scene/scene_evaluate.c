@@ -173,6 +173,26 @@ static void place_triangles(assay_scene *scene, const assay_shape *shape)
     }
 }
 
+void assay_scene_join_vertices(assay_scene *scene)
+{
+    for (uint32_t i = 0; i < scene->shape_count; i++) {
+        const assay_shape *shape = &scene->shapes[i];
+        const float       *uv    = shape->primitive->uv[0];
+        for (uint32_t v = 0; v < shape->vertex_count; v++) {
+            const size_t        index = (size_t)shape->first_vertex + v;
+            assay_world_vertex *to    = &scene->vertices[index];
+            *to                       = (assay_world_vertex){0};
+            memcpy(to->position, scene->positions + 3 * index, sizeof to->position);
+            if (shape->normals) {
+                memcpy(to->normal, shape->normals + 3 * (size_t)v, sizeof to->normal);
+            }
+            if (uv) {
+                memcpy(to->uv, uv + 2 * (size_t)v, sizeof to->uv);
+            }
+        }
+    }
+}
+
 static void find_bounds(assay_scene *scene)
 {
     scene->bounds_min = scene->bounds_max = vec3(0.0, 0.0, 0.0);
@@ -203,6 +223,7 @@ assay_status assay_scene_evaluate(assay_scene *scene, double seconds)
         }
         place_triangles(scene, shape);
     }
+    assay_scene_join_vertices(scene);
     find_bounds(scene);
     assay_scene_place_cameras(scene);
     assay_scene_place_lights(scene);

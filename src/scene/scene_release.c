@@ -100,6 +100,7 @@ static void release_evaluation(assay_scene *scene)
     }
     assay_release(context, scene->shapes);
     assay_release(context, scene->positions);
+    assay_release(context, scene->vertices);
     assay_release(context, scene->indices);
     assay_release(context, scene->triangle_shape);
     assay_release(context, scene->punctual);

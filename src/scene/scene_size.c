@@ -17,7 +17,8 @@ static uint64_t primitive_bytes(const assay_primitive *p)
 
 uint64_t assay_scene_geometry_bytes(const assay_scene *scene)
 {
-    uint64_t bytes = scene->vertex_count * 12ull + scene->triangle_count * 16ull;
+    uint64_t bytes =
+        scene->vertex_count * (12ull + sizeof *scene->vertices) + scene->triangle_count * 16ull;
     for (uint32_t i = 0; i < scene->shape_count; i++) {
         const assay_shape *s = &scene->shapes[i];
         bytes += s->vertex_count * ((s->normals ? 12ull : 0) + (s->tangents ? 16ull : 0));

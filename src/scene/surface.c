@@ -13,30 +13,28 @@
 
 static const double MIN_COSINE = 0x1p-10;
 
-/* A triangle's corners: positions, indices within its shape, and weights. */
+/* A triangle's corners: edges, vertices, and weights. */
 typedef struct {
-    assay_vec3 p0, e1, e2; /* first corner, and from there to the others, m */
-    uint32_t   vertex[3];  /* into the shape's vertices                     */
-    double     weight[3];
+    assay_vec3                p0, e1, e2; /* first corner, and from there to the others, m */
+    const assay_world_vertex *joined[3];
+    uint32_t                  vertex[3]; /* into the shape's vertices                     */
+    double                    weight[3];
 } corners;
 
-static inline assay_vec3 load3(const float *values, uint32_t index)
-{
-    const float *v = values + (size_t)index * 3;
-    return vec3(v[0], v[1], v[2]);
-}
+static inline assay_vec3 load3(const float v[3]) { return vec3(v[0], v[1], v[2]); }
 
 static inline corners corners_of(const assay_scene *scene, uint32_t triangle)
 {
     const uint32_t    *index = scene->indices + (size_t)triangle * 3;
     const assay_shape *shape = &scene->shapes[scene->triangle_shape[triangle]];
     corners            c;
-    c.p0 = load3(scene->positions, index[0]);
-    c.e1 = vec3_sub(load3(scene->positions, index[1]), c.p0);
-    c.e2 = vec3_sub(load3(scene->positions, index[2]), c.p0);
     for (int i = 0; i < 3; i++) {
+        c.joined[i] = &scene->vertices[index[i]];
         c.vertex[i] = index[i] - shape->first_vertex;
     }
+    c.p0 = load3(c.joined[0]->position);
+    c.e1 = vec3_sub(load3(c.joined[1]->position), c.p0);
+    c.e2 = vec3_sub(load3(c.joined[2]->position), c.p0);
     return c;
 }
 
@@ -56,13 +54,32 @@ void assay_triangle_geometry(const assay_scene *scene, uint32_t triangle, assay_
     *area_out       = 0.5 * normal_of(&c, ng_out);
 }
 
-static inline void interpolate(const corners *c, const float *values, int width, double *out)
+/* The mean, by weight, of what three vertices have. */
+static inline void blend(const corners *c, const float *a, const float *b, const float *d,
+                         int width, double *out)
 {
-    const float *a = values + (size_t)c->vertex[0] * (size_t)width;
-    const float *b = values + (size_t)c->vertex[1] * (size_t)width;
-    const float *d = values + (size_t)c->vertex[2] * (size_t)width;
     for (int i = 0; i < width; i++) {
         out[i] = c->weight[0] * a[i] + c->weight[1] * b[i] + c->weight[2] * d[i];
+    }
+}
+
+static inline void interpolate(const corners *c, const float *values, int width, double *out)
+{
+    blend(c, values + (size_t)c->vertex[0] * (size_t)width,
+          values + (size_t)c->vertex[1] * (size_t)width,
+          values + (size_t)c->vertex[2] * (size_t)width, width, out);
+}
+
+/* 0 where the shape has no such set. */
+static inline void interpolate_uv(const corners *c, const assay_primitive *primitive, unsigned set,
+                                  double uv_out[2])
+{
+    if (set == 0) {
+        blend(c, c->joined[0]->uv, c->joined[1]->uv, c->joined[2]->uv, 2, uv_out);
+    } else if (primitive->uv[set]) {
+        interpolate(c, primitive->uv[set], 2, uv_out);
+    } else {
+        uv_out[0] = uv_out[1] = 0.0;
     }
 }
 
@@ -88,16 +105,16 @@ static assay_vec3 shading_normal(const assay_shape *shape, const corners *c, ass
     if (!shape->normals) {
         return ng;
     }
-    interpolate(c, shape->normals, 3, sum);
+    blend(c, c->joined[0]->normal, c->joined[1]->normal, c->joined[2]->normal, 3, sum);
     assay_vec3   n      = vec3(sum[0], sum[1], sum[2]);
     const double length = vec3_length(n);
     if (!(length > 1e-6)) {
         return ng;
     }
     n = vec3_scale(n, 1.0 / length);
-    if (vec3_dot(n, ng) < 0.0 && vec3_dot(load3(shape->normals, c->vertex[0]), ng) < 0.0 &&
-        vec3_dot(load3(shape->normals, c->vertex[1]), ng) < 0.0 &&
-        vec3_dot(load3(shape->normals, c->vertex[2]), ng) < 0.0) {
+    if (vec3_dot(n, ng) < 0.0 && vec3_dot(load3(c->joined[0]->normal), ng) < 0.0 &&
+        vec3_dot(load3(c->joined[1]->normal), ng) < 0.0 &&
+        vec3_dot(load3(c->joined[2]->normal), ng) < 0.0) {
         n = vec3_negate(n);
     }
     return keep_on_side(n, ng);
@@ -182,12 +199,8 @@ void assay_surface_at(const assay_scene *scene, uint32_t triangle, double u, dou
     s->position                      = vec3_mad(vec3_mad(c.p0, u, c.e1), v, c.e2);
     normal_of(&c, &s->ng);
     s->ns = shading_normal(shape, &c, s->ng);
-    for (int set = 0; set < 2; set++) {
-        s->uv[set][0] = s->uv[set][1] = 0.0;
-        if (primitive->uv[set]) {
-            interpolate(&c, primitive->uv[set], 2, s->uv[set]);
-        }
-    }
+    interpolate_uv(&c, primitive, 0, s->uv[0]);
+    interpolate_uv(&c, primitive, 1, s->uv[1]);
     s->color[0] = s->color[1] = s->color[2] = s->color[3] = 1.0;
     if (primitive->colors) {
         interpolate(&c, primitive->colors, 4, s->color);
@@ -202,16 +215,13 @@ double assay_triangle_coverage(const assay_scene *scene, uint32_t triangle, doub
     if (material->alpha_mode == ASSAY_ALPHA_OPAQUE || material->model == ASSAY_MATERIAL_LAMBERT) {
         return 1.0;
     }
-    const assay_texture_ref *ref   = &material->base_color_texture;
-    const float             *uvs   = shape->primitive->uv[ref->texcoord & 1u];
-    corners                  c     = corners_of(scene, triangle);
-    double                   uv[2] = {0.0, 0.0}, color[4] = {1.0, 1.0, 1.0, 1.0}, texel[4];
+    const assay_texture_ref *ref = &material->base_color_texture;
+    corners                  c   = corners_of(scene, triangle);
+    double                   uv[2], color[4] = {1.0, 1.0, 1.0, 1.0}, texel[4];
     c.weight[0] = 1.0 - u - v;
     c.weight[1] = u;
     c.weight[2] = v;
-    if (uvs) {
-        interpolate(&c, uvs, 2, uv);
-    }
+    interpolate_uv(&c, shape->primitive, ref->texcoord & 1u, uv);
     if (shape->primitive->colors) {
         interpolate(&c, shape->primitive->colors, 4, color);
     }

@@ -13,6 +13,7 @@
 #include "core/alloc.h"
 #include "core/numerics.h"
 #include "core/random.h"
+#include "scene/scene_build.h"
 #include "scene/surface.h"
 #include "scene/tangent_space.h"
 #include "scene/texture.h"
@@ -31,6 +32,7 @@ typedef struct {
     uint8_t             texel[4];
     uint32_t            indices[3], triangle_shape[1];
     float               positions[12], normals[9], tangents[12], uv[2][6], colors[12];
+    assay_world_vertex  vertices[4];
 } one_triangle;
 
 static void no_texture(assay_texture_ref *ref)
@@ -104,10 +106,30 @@ static void make(one_triangle *t)
                              .materials      = m,
                              .shapes         = &t->shape,
                              .positions      = t->positions,
+                             .vertices       = t->vertices,
                              .indices        = t->indices,
                              .triangle_shape = t->triangle_shape,
+                             .shape_count    = 1,
                              .triangle_count = 1,
                              .vertex_count   = 4};
+}
+
+static void surface_at(one_triangle *t, double u, double v, assay_surface *surface_out)
+{
+    assay_scene_join_vertices(&t->scene);
+    assay_surface_at(&t->scene, 0, u, v, surface_out);
+}
+
+static void geometry_of(one_triangle *t, assay_vec3 *ng_out, double *area_out)
+{
+    assay_scene_join_vertices(&t->scene);
+    assay_triangle_geometry(&t->scene, 0, ng_out, area_out);
+}
+
+static double coverage_at(one_triangle *t, double u, double v)
+{
+    assay_scene_join_vertices(&t->scene);
+    return assay_triangle_coverage(&t->scene, 0, u, v);
 }
 
 static void assert_vec3(assay_vec3 v, double x, double y, double z)
@@ -138,13 +160,13 @@ static void areas_and_normals(void **state)
     double       area;
     (void)state;
     make(&t);
-    assay_triangle_geometry(&t.scene, 0, &ng, &area);
+    geometry_of(&t, &ng, &area);
     assert_vec3(ng, 0.0, 0.0, 1.0);
     assert_near(area, 0.5, 0.0);
     for (uint32_t k = 0; k < 200; k++) {
         const assay_vec3 a = random_vector(k, 0), b = random_vector(k, 1), c = random_vector(k, 2);
         set_triangle(&t, a, b, c);
-        assay_triangle_geometry(&t.scene, 0, &ng, &area);
+        geometry_of(&t, &ng, &area);
         /* Heron, from the sides; floats round the corners to 2^-24. */
         const double x = vec3_length(vec3_sub(a, b)), y = vec3_length(vec3_sub(b, c)),
                      z = vec3_length(vec3_sub(c, a)), s = 0.5 * (x + y + z);
@@ -156,15 +178,15 @@ static void areas_and_normals(void **state)
         }
     }
     set_triangle(&t, vec3(1.0, 2.0, 3.0), vec3(2.0, 3.0, 4.0), vec3(3.0, 4.0, 5.0));
-    assay_triangle_geometry(&t.scene, 0, &ng, &area);
+    geometry_of(&t, &ng, &area);
     assert_near(area, 0.0, 0.0);
     assert_vec3(ng, 0.0, 0.0, 1.0);
     set_triangle(&t, vec3(0.0, 0.0, 0.0), vec3(1e-30, 0.0, 0.0), vec3(0.0, 1e-30, 0.0));
-    assay_triangle_geometry(&t.scene, 0, &ng, &area);
+    geometry_of(&t, &ng, &area);
     assert_vec3(ng, 0.0, 0.0, 1.0);
     assert_true(area > 0.0);
     set_triangle(&t, vec3(0.0, 0.0, 0.0), vec3(3e38, 0.0, 0.0), vec3(0.0, 3e38, 0.0));
-    assay_triangle_geometry(&t.scene, 0, &ng, &area);
+    geometry_of(&t, &ng, &area);
     assert_vec3(ng, 0.0, 0.0, 1.0);
     assert_true(isfinite(area));
 }
@@ -180,14 +202,14 @@ static void everything_is_interpolated(void **state)
     for (int i = 0; i < 12; i++) {
         t.colors[i] = 0.1f * (float)i;
     }
-    assay_surface_at(&t.scene, 0, 0.25, 0.5, &s);
+    surface_at(&t, 0.25, 0.5, &s);
     assert_near(s.uv[0][0] + s.uv[1][1], 0.0, 0.0);
     assert_near(s.color[2], 1.0, 0.0);
     set_uv(&t, 0, uv0);
     set_uv(&t, 1, uv1);
     t.primitive.colors = t.colors;
     set_triangle(&t, vec3(1.0, 2.0, 3.0), vec3(5.0, 2.0, 3.0), vec3(1.0, 10.0, 3.0));
-    assay_surface_at(&t.scene, 0, 0.25, 0.5, &s);
+    surface_at(&t, 0.25, 0.5, &s);
     assert_vec3(s.position, 2.0, 6.0, 3.0);
     assert_near(s.uv[0][0], 0.375, 1e-15);
     assert_near(s.uv[0][1], 0.625, 1e-15);
@@ -214,11 +236,11 @@ static void normals_are_interpolated_and_unit(void **state)
     (void)state;
     make(&t);
     set_normals(&t, vec3(-1.0, 0.0, 2.0), vec3(1.0, 0.0, 2.0), vec3(0.0, 1.0, 2.0));
-    assay_surface_at(&t.scene, 0, 0.5, 0.0, &s);
+    surface_at(&t, 0.5, 0.0, &s);
     assert_vec3(s.ns, 0.0, 0.0, 1.0);
-    assay_surface_at(&t.scene, 0, 1.0, 0.0, &s);
+    surface_at(&t, 1.0, 0.0, &s);
     assert_vec3(s.ns, 1.0 / sqrt(5.0), 0.0, 2.0 / sqrt(5.0));
-    assay_surface_at(&t.scene, 0, 0.0, 1.0, &s);
+    surface_at(&t, 0.0, 1.0, &s);
     assert_vec3(s.ns, 0.0, 1.0 / sqrt(5.0), 2.0 / sqrt(5.0));
 }
 
@@ -230,16 +252,16 @@ static void leaning_normals_are_bent_back(void **state)
     (void)state;
     make(&t);
     set_normals(&t, vec3(3.0, 4.0, -1.0), vec3(3.0, 4.0, 0.01), vec3(3.0, 4.0, 0.01));
-    assay_surface_at(&t.scene, 0, 0.0, 0.0, &s);
+    surface_at(&t, 0.0, 0.0, &s);
     assert_near(s.ns.z, 0x1p-10, 1e-15);
     assert_near(s.ns.y / s.ns.x, 4.0 / 3.0, 1e-6);
     assert_near(vec3_length(s.ns), 1.0, 1e-15);
     /* no tangential part: nothing to keep but the geometric normal */
     set_normals(&t, vec3(0.0, 0.0, -1.0), vec3(0.0, 0.0, 1.0), vec3(0.0, 0.0, 1.0));
-    assay_surface_at(&t.scene, 0, 0.0, 0.0, &s);
+    surface_at(&t, 0.0, 0.0, &s);
     assert_vec3(s.ns, 0.0, 0.0, 1.0);
     /* opposite normals cancel */
-    assay_surface_at(&t.scene, 0, 0.5, 0.0, &s);
+    surface_at(&t, 0.5, 0.0, &s);
     assert_vec3(s.ns, 0.0, 0.0, 1.0);
 }
 
@@ -250,7 +272,7 @@ static void inverted_normals_are_turned_round(void **state)
     (void)state;
     make(&t);
     set_normals(&t, vec3(-1.0, 0.0, -2.0), vec3(1.0, 0.0, -2.0), vec3(0.0, 1.0, -2.0));
-    assay_surface_at(&t.scene, 0, 1.0, 0.0, &s);
+    surface_at(&t, 1.0, 0.0, &s);
     assert_vec3(s.ns, -1.0 / sqrt(5.0), 0.0, 2.0 / sqrt(5.0));
 }
 
@@ -284,7 +306,7 @@ static bool invariant_holds(bool spoil)
         set_texture(&t, &t.material.normal_texture, (int)(128 + 127 * random_at(k, 80)),
                     (int)(128 + 127 * random_at(k, 81)), (int)(128 + 127 * random_at(k, 82)), 255);
         t.material.normal_scale = 3.0 * random_at(k, 83);
-        assay_surface_at(&t.scene, 0, 0.3, 0.3, &s);
+        surface_at(&t, 0.3, 0.3, &s);
         const assay_vec3 ns = spoil ? vec3(t.normals[0], t.normals[1], t.normals[2]) : s.ns;
         if (!(vec3_dot(ns, s.ng) >= 0x1p-10 - 1e-9) || !is_orthonormal(&s.frame) ||
             vec3_length(vec3_sub(s.frame.z, ns)) != 0.0) {
@@ -311,10 +333,10 @@ static void set_normal_map(one_triangle *t, double x, double y)
                 (int)lround(127.5 * (y + 1.0)), (int)lround(127.5 * (z + 1.0)), 255);
 }
 
-static void assert_leans(const one_triangle *t, double x, double y)
+static void assert_leans(one_triangle *t, double x, double y)
 {
     assay_surface s;
-    assay_surface_at(&t->scene, 0, 0.3, 0.3, &s);
+    surface_at(t, 0.3, 0.3, &s);
     assert_near(s.ns.x, x, 0.01);
     assert_near(s.ns.y, y, 0.01);
     assert_near(s.ns.z, sqrt(1.0 - x * x - y * y), 0.01);
@@ -428,7 +450,7 @@ static void normal_scale_scales(void **state)
     t.material.normal_scale = -1.0;
     assert_leans_by_uv(&t, -0.5, -0.25);
     t.material.normal_scale = 1e6;
-    assay_surface_at(&t.scene, 0, 0.3, 0.3, &s);
+    surface_at(&t, 0.3, 0.3, &s);
     assert_true(s.ns.z >= 0x1p-10 - 1e-15);
     assert_near(s.ns.y / s.ns.x, 0.5, 0.02);
 }
@@ -442,13 +464,13 @@ static void frames_follow_the_tangent_where_it_counts(void **state)
     set_uv(&t, 0, quarter);
     take_tangents(&t);
     t.material.model = ASSAY_MATERIAL_WARD;
-    assay_surface_at(&t.scene, 0, 0.2, 0.2, &s);
+    surface_at(&t, 0.2, 0.2, &s);
     assert_vec3(s.frame.x, 0.0, 1.0, 0.0);
     assert_vec3(s.frame.y, -1.0, 0.0, 0.0);
     t.material.model = ASSAY_MATERIAL_WARD_PUBLISHED;
     set_uv(&t, 0, mirrored);
     take_tangents(&t);
-    assay_surface_at(&t.scene, 0, 0.2, 0.2, &s);
+    surface_at(&t, 0.2, 0.2, &s);
     assert_vec3(s.frame.x, -1.0, 0.0, 0.0);
 }
 
@@ -472,18 +494,18 @@ static void base_color_is_a_product(void **state)
     t.material.base_color[0] = 0.5;
     t.material.base_color[3] = 0.8;
     t.material.alpha_mode    = ASSAY_ALPHA_BLEND;
-    assay_surface_at(&t.scene, 0, 0.2, 0.2, &s);
+    surface_at(&t, 0.2, 0.2, &s);
     assay_surface_base_color(&t.scene, &s, &color, &coverage);
     assert_near(color.r, 0.125 * assay_srgb_decode8(188), 1e-15);
     assert_near(color.g, 0.25 * assay_srgb_decode8(128), 1e-15);
     assert_near(color.b, 0.25, 1e-15);
     assert_near(coverage, 0.8 * 0.4 * 0.5, 1e-15);
-    assert_near(assay_triangle_coverage(&t.scene, 0, 0.2, 0.2), coverage, 0.0);
+    assert_near(coverage_at(&t, 0.2, 0.2), coverage, 0.0);
     /* COLOR_0 may exceed 1; a reflectance may not */
     for (int i = 0; i < 12; i++) {
         t.colors[i] = i % 4 == 0 ? -1.0f : 100.0f;
     }
-    assay_surface_at(&t.scene, 0, 0.2, 0.2, &s);
+    surface_at(&t, 0.2, 0.2, &s);
     assay_surface_base_color(&t.scene, &s, &color, &coverage);
     assert_vec3(vec3(color.r, color.g, color.b), 0.0, 1.0, 1.0);
     assert_near(coverage, 1.0, 0.0);
@@ -511,10 +533,10 @@ static void coverage_follows_the_alpha_mode(void **state)
         t.material.alpha_mode    = rows[i].mode;
         t.material.model         = rows[i].model;
         t.material.base_color[3] = rows[i].alpha;
-        assay_surface_at(&t.scene, 0, 0.2, 0.2, &s);
+        surface_at(&t, 0.2, 0.2, &s);
         assay_surface_material_at(&t.scene, &s, &m);
         assert_near(m.coverage, rows[i].coverage, 0.0);
-        assert_near(assay_triangle_coverage(&t.scene, 0, 0.2, 0.2), rows[i].coverage, 0.0);
+        assert_near(coverage_at(&t, 0.2, 0.2), rows[i].coverage, 0.0);
     }
 }
 
@@ -524,7 +546,7 @@ static void emission_has_its_sides(void **state)
     assay_surface s;
     (void)state;
     make(&t);
-    assay_surface_at(&t.scene, 0, 0.2, 0.2, &s);
+    surface_at(&t, 0.2, 0.2, &s);
     assert_true(rgb_is_black(assay_surface_emission(&t.scene, &s, true)));
     assert_false(assay_material_emits(&t.material));
     t.material.emissive     = rgb(1.0, 2.0, 30.0);
@@ -550,7 +572,7 @@ static void unlit_materials_show_their_color(void **state)
     t.material.model         = ASSAY_MATERIAL_UNLIT;
     t.material.base_color[0] = 0.25;
     t.material.emissive      = rgb(9.0, 9.0, 9.0);
-    assay_surface_at(&t.scene, 0, 0.2, 0.2, &s);
+    surface_at(&t, 0.2, 0.2, &s);
     assert_false(assay_material_emits(&t.material));
     assert_near(assay_surface_emission(&t.scene, &s, true).r, 0.25, 0.0);
     assert_near(assay_surface_emission(&t.scene, &s, true).g, 1.0, 0.0);
@@ -572,7 +594,7 @@ static void channels_are_those_of_the_specification(void **state)
     t.material.transmission    = 0.25;
     t.material.specular_factor = 0.5;
     t.material.specular_color  = rgb(2.0, 1.0, 0.5);
-    assay_surface_at(&t.scene, 0, 0.2, 0.2, &s);
+    surface_at(&t, 0.2, 0.2, &s);
     assay_surface_material_at(&t.scene, &s, &m);
     assert_near(m.metallic, 0.5, 0.0);
     assert_near(m.roughness, 0.75, 0.0);
