@@ -11,9 +11,9 @@ number=0
 while IFS= read -r line; do
     case $line in "#"* | "") continue ;; esac
     number=$((number + 1))
-    file=$(echo "$line" | sed 's/ ; .*//')
-    change=$(echo "$line" | sed 's/^[^;]* ; //; s/ ; [^;]*$//')
-    test=$(echo "$line" | sed 's/.* ; //')
+    file=$(printf '%s\n' "$line" | sed 's/ ; .*//')
+    change=$(printf '%s\n' "$line" | sed 's/^[^;]* ; //; s/ ; [^;]*$//')
+    test=$(printf '%s\n' "$line" | sed 's/.* ; //')
     unit=${file##* in }
     file=${file%% in *}
     rm -rf "$folder/src"
