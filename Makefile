@@ -192,32 +192,34 @@ figures: all ## draw the pictures of docs/methods again
 	   $(BUILD)/assay basis plot --accuracy --lobe ward:0.2,0.5@$$t --size 560 -o $(FIGURES)/accuracy-ward-$$t.png; done; \
 	 for f in "1 0" "1 1" "2 0" "2 1" "2 2" "3 1"; do set -- $$f; \
 	   $(BUILD)/assay basis plot --basis hsh --l $$1 --m $$2 --size 200 -o $(FIGURES)/hsh-$$1-$$2.png; done; \
-	 box=cornell-box; draw() { name=$$1 method=$${1%%/*}; shift; \
-	   $(BUILD)/assay render scenes/$$box/$$box.gltf -q --size 280x280 --layers color -m $$method \
-	   --exposure 1 -o $(BUILD)/figure.exr \
+	 box=scenes/cornell-box/cornell-box.gltf; \
+	 draw() { name=$$1 method=$${1%%/*}; shift; $(BUILD)/assay render $$box \
+	   -q --size 280x280 --layers color -m $$method --exposure 1 -o $(BUILD)/figure.exr \
 	   --png $(FIGURES)/$$(echo $$name | tr / -).png "$$@"; }; \
 	 draw irradiance-cache/records --debug records --a 0.3 --r-min-pixels 4 --spp 1; \
 	 draw irradiance-cache/weights --debug weights --a 0.3 --r-min-pixels 4 --spp 1 --exposure 0; \
 	 coarse="--a 0.4 --gradients none --r-min-pixels 8 --spp 16"; \
 	 draw irradiance-cache/one-pass --passes 1 $$coarse; \
 	 draw irradiance-cache/two-passes --passes 2 $$coarse; \
-	 truth() { $(BUILD)/assay render scenes/$$box/$$box.gltf -q --size 280x280 --spp 1 "$$@" \
+	 truth() { $(BUILD)/assay render $$box -q --size 280x280 --spp 1 "$$@" \
 	   -o $(BUILD)/truth.exr; }; \
 	 few="--secondary direct --r-min-pixels 4 --spp 1"; \
 	 error="--debug error --reference $(BUILD)/truth.exr --exposure 0"; \
 	 truth -m irradiance-cache --layers irradiance --secondary direct --r-min-pixels 4 --a 0.15 \
 	   --gradient-limit on --theta-strata 32 --phi-strata 100; \
 	 draw irradiance-cache/error $$error $$few --a 0.3; \
-	 box=cornell-box-glossy; few="$$few --a 0.25 --glossy-accuracy 0"; \
+	 box=scenes/cornell-box-glossy/cornell-box-glossy.gltf; few="$$few --a 0.25 --glossy-accuracy 0"; \
 	 truth -m radiance-cache --layers split,irradiance $$few --order 15; \
 	 draw radiance-cache/records --debug records $$few; \
 	 for n in 2 5 10; do draw radiance-cache/order-$$n $$error $$few --order $$n; done; \
-	 box=cornell-box; \
+	 box=scenes/cornell-box/cornell-box.gltf; \
 	 draw splat/one-pass $$coarse; \
 	 walk="--a 0.3 --r-min-pixels 4 --spp 4 --gbuffer centres"; \
-	 draw splat/walk-# --frames 0:3 --max-new-records 300 --uncovered black $$walk; \
 	 draw splat/a-small --splat-a 0.2 --uncovered black $$walk; \
-	 draw splat/a-large --splat-a 0.9 --uncovered black $$walk
+	 draw splat/a-large --splat-a 0.9 --uncovered black $$walk; \
+	 mkdir -p $(BUILD)/walk; cp $${box%gltf}bin $(BUILD)/walk; \
+	 sed -f $(FIGURES)/walk.sed $$box > $(BUILD)/walk/walk.gltf; box=$(BUILD)/walk/walk.gltf; \
+	 draw splat/walk-# --frames 0:3 --fps 4 --max-new-records 300 --uncovered black $$walk
 
 # ---- order in the house ----
 layers: ## check that every include follows src/layers.txt

@@ -62,6 +62,7 @@ typedef struct {
     uint64_t camera_rays, scatter_rays, shadow_rays; /* rays traced, by kind                      */
     uint64_t samples; /* camera paths                                              */
     uint64_t records; /* of caches, made or loaded                                           */
+    uint64_t lost; /* contributions of records to pixels that splat's bounds=published left out */
     uint64_t spp_min, spp_max; /* over pixels                                               */
     double   relative_error;   /* mean over pixels of the standard error of the pixel's
                                   luminance / the image's mean luminance; NaN where it is not

@@ -98,6 +98,7 @@ static assay_status write_stats(render_job *job, const char *path)
         cJSON_AddStringToObject(root, "scene_digest", assay_scene_digest(job->scene)) &&
         add_rays(root, s) && cJSON_AddNumberToObject(root, "samples", (double)s->samples) &&
         cJSON_AddNumberToObject(root, "records", (double)s->records) &&
+        cJSON_AddNumberToObject(root, "lost_contributions", (double)s->lost) &&
         cJSON_AddNumberToObject(root, "spp_min", (double)s->spp_min) &&
         cJSON_AddNumberToObject(root, "spp_max", (double)s->spp_max) && add_error(root, s) &&
         add_seconds(root, job) && add_memory(root, s) &&

@@ -21,7 +21,7 @@ typedef enum { ASSAY_STRATA_COSINE, ASSAY_STRATA_UNIFORM, ASSAY_STRATA_PLANE } a
 typedef enum {
     ASSAY_MISSING_PLANE,           /* nothing                                                    */
     ASSAY_MISSING_RATIO,           /* all else, raised by what a furnace lacks [larsen04]        */
-    ASSAY_MISSING_BORDER,          /* the pixels of the rim, as published [gautron08]            */
+    ASSAY_MISSING_BORDER,          /* the pixels of the rim, as published [class08]            */
     ASSAY_MISSING_BORDER_CORRECTED /* the same, reaching down to the horizon                     */
 } assay_missing;
 

@@ -81,7 +81,7 @@ static plane_cell pixel_exact(const hemisphere_plane *plane, int i, int j)
     return sum;
 }
 
-/* A cos theta / d^2 of the pixel's middle [gautron08]. */
+/* A cos theta / d^2 of the pixel's middle [class08]. */
 static double pixel_published(const hemisphere_plane *plane, int i, int j)
 {
     const double x = 0.5 * (plane->x[i] + plane->x[i + 1]);
@@ -106,7 +106,7 @@ static plane_cell beyond_exact(double half, double from, double to)
     return (plane_cell){solid, vec3_scale(flux, 0.5)};
 }
 
-/* cos theta_b times the azimuth that the edge subtends, theta_b at its middle [gautron08]. */
+/* cos theta_b times the azimuth that the edge subtends, theta_b at its middle [class08]. */
 static double beyond_published(double half, double from, double to)
 {
     const double middle = 0.5 * (from + to);

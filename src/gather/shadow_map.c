@@ -11,15 +11,13 @@
 #include "core/context.h"
 #include "core/numerics.h"
 #include "gather/raster.h"
+#include "trace/vertex_light.h"
 
 /* A spot whose tangent is above this is seen by six maps, as a point light is. */
 static const double WIDEST = 4.0;
 
 /* Over what is needed: rounding. */
 static const double SLACK = 1.0 + 0x1p-20;
-
-/* Shadow rays end this much before the light, as those of paths do. */
-static const double SHADOW_END = 1.0 - 0x1p-30;
 
 /* Depths of one view: INFINITY where nothing is hit. */
 typedef struct {
@@ -284,9 +282,7 @@ static assay_rgb unhidden(const assay_vertex *vertex, const assay_bsdf_view *vie
 {
     const assay_vec3 wi      = frame3_to_local(&vertex->frame, light->direction);
     const bool       through = wi.z * vertex->wo_local.z < 0.0;
-    const bool crosses = (vec3_dot(light->direction, vertex->surface.ng) >= 0.0) != vertex->front;
-    /* What shading and geometric normal disagree about does not exist. */
-    return through == crosses
+    return assay_vertex_sides_agree(vertex, light->direction, through)
                ? rgb_scale(rgb_mul(assay_bsdf_view_evaluate(view, wi).value, light->radiance),
                            1.0 / light->pdf)
                : rgb_grey(0.0);
@@ -296,14 +292,11 @@ static assay_rgb unhidden(const assay_vertex *vertex, const assay_bsdf_view *vie
 static assay_rgb others(const assay_world *world, const assay_vertex *vertex,
                         const assay_bsdf_view *view, assay_random *random, assay_ray_counts *counts)
 {
-    const double       u_choice = assay_random_next(random);
-    const double       u1       = assay_random_next(random);
-    const double       u2       = assay_random_next(random);
-    assay_receiver     receiver = {.point = vertex->surface.position};
-    assay_light_sample light;
-    if (!vertex->transmits) {
-        receiver.normal = vertex->front ? vertex->surface.ng : vec3_negate(vertex->surface.ng);
-    }
+    const double         u_choice = assay_random_next(random);
+    const double         u1       = assay_random_next(random);
+    const double         u2       = assay_random_next(random);
+    const assay_receiver receiver = assay_vertex_as_receiver(vertex);
+    assay_light_sample   light;
     if (!assay_lights_sample(world->lights, &receiver, false, u_choice, u1, u2, &light) ||
         light.delta) {
         return rgb_grey(0.0);
@@ -312,14 +305,8 @@ static assay_rgb others(const assay_world *world, const assay_vertex *vertex,
     if (rgb_is_black(all)) {
         return all;
     }
-    const assay_vec3 origin =
-        assay_world_offset(world, vertex->surface.position, vertex->surface.ng, light.direction);
-    const assay_vec3 along =
-        light.infinite ? light.direction
-                       : vec3_sub(vec3_add(vertex->surface.position, light.to_light), origin);
-    return rgb_scale(all, assay_world_transmittance(world, origin, along,
-                                                    light.infinite ? INFINITY : SHADOW_END,
-                                                    &counts->shadow));
+    assay_vec3 along;
+    return rgb_scale(all, assay_vertex_sees_light(world, vertex, &light, &along, &counts->shadow));
 }
 
 assay_rgb assay_shadow_maps_light(const assay_shadow_maps *maps, assay_vertex *vertex,

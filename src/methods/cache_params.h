@@ -47,12 +47,12 @@
      "[gautron06] 4.4.1"},                                                                        \
     {"raster_fov", ASSAY_PARAM_REAL, "rad", "2.214297435588181",  ASSAY_FOV_MIN, ASSAY_FOV_MAX,   \
      NULL, "Field of view of gather=raster; 2 atan 2 as published (126.87 degrees).",             \
-     "[larsen04], [gautron08]"},                                                                  \
+     "[larsen04], [class08]"},                                                                  \
     {"missing", ASSAY_PARAM_CHOICE, "", "border-corrected", 0, 0,                                 \
      "plane|ratio|border|border-corrected",                                                       \
      "What stands for the directions that gather=raster misses: nothing, a ratio, the pixels of " \
      "the rim as published, or these with the cosine of where they are.",                         \
-     "[gautron06] 4.4.1, [larsen04], [gautron08]"},                                               \
+     "[gautron06] 4.4.1, [larsen04], [class08]"},                                               \
     {"shadow", ASSAY_PARAM_CHOICE, "", "ray", 0, 0, "ray|map",                                    \
      "Shadows where a gathering ray ends, with secondary=direct: by rays, or by maps of punctual "\
      "lights (all others by rays).",                                                              \

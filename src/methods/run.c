@@ -53,6 +53,7 @@ void assay_run_fill_stats(const assay_film *film, const assay_frame *frame,
     stats->scatter_rays   = counts->scatter;
     stats->shadow_rays    = counts->shadow;
     stats->records        = counts->records;
+    stats->lost           = counts->lost;
     stats->peak_memory    = assay_process_peak_memory();
     stats->bvh_bytes      = assay_bvh_bytes(frame->world->bvh);
     stats->geometry_bytes = assay_scene_geometry_bytes(frame->world->scene);

@@ -7,10 +7,7 @@
 #include "trace/path_trace.h"
 
 #include "core/numerics.h"
-
-/* Shadow rays end this much before the light, in parts of their length: far above rounding, so that
- * an emitter does not hide itself. */
-static const double SHADOW_END = 1.0 - 0x1p-30;
+#include "trace/vertex_light.h"
 
 /* Roulette lets a path go on with at most this probability, so that a closed white furnace ends. */
 static const double ROULETTE_MAX = 0.95;
@@ -51,24 +48,6 @@ static assay_rgb absorption(const assay_material *medium, double distance)
                assay_pow(medium->attenuation_color.b, lengths));
 }
 
-/* A direction must be on the same side for the shading and the geometric normal: what one of them
- * calls reflection and the other transmission does not exist. */
-static bool sides_agree(const assay_vertex *vertex, assay_vec3 wi, bool transmitted)
-{
-    const bool crosses = (vec3_dot(wi, vertex->surface.ng) >= 0.0) != vertex->front;
-    return crosses == transmitted;
-}
-
-/* The vertex as lights see it. */
-static assay_receiver receiver_of(const assay_vertex *vertex)
-{
-    assay_receiver receiver = {.point = vertex->surface.position};
-    if (!vertex->transmits) {
-        receiver.normal = vertex->front ? vertex->surface.ng : vec3_negate(vertex->surface.ng);
-    }
-    return receiver;
-}
-
 /* Draws a light for the vertex, which needs no BSDF yet. */
 static bool draw_light(path_walk *walk, const assay_vertex *vertex, assay_light_sample *light_out)
 {
@@ -76,7 +55,7 @@ static bool draw_light(path_walk *walk, const assay_vertex *vertex, assay_light_
     const double         u1         = assay_random_next(walk->random);
     const double         u2         = assay_random_next(walk->random);
     const bool           delta_only = walk->settings->estimator == ASSAY_ESTIMATOR_BSDF;
-    const assay_receiver receiver   = receiver_of(vertex);
+    const assay_receiver receiver   = assay_vertex_as_receiver(vertex);
     return assay_lights_sample(walk->world->lights, &receiver, delta_only, u_choice, u1, u2,
                                light_out);
 }
@@ -90,20 +69,16 @@ static void add_drawn_light(path_walk *walk, const assay_vertex *vertex,
         return;
     }
     const assay_vec3 wi = frame3_to_local(&vertex->frame, light->direction);
-    if (!sides_agree(vertex, light->direction, wi.z * vertex->wo_local.z < 0.0)) {
+    if (!assay_vertex_sides_agree(vertex, light->direction, wi.z * vertex->wo_local.z < 0.0)) {
         return;
     }
     const assay_bsdf_value f = assay_bsdf_view_evaluate(view, wi);
     if (rgb_is_black(f.value)) {
         return;
     }
-    const assay_vec3 origin = assay_world_offset(walk->world, vertex->surface.position,
-                                                 vertex->surface.ng, light->direction);
-    const assay_vec3 along =
-        light->infinite ? light->direction
-                        : vec3_sub(vec3_add(vertex->surface.position, light->to_light), origin);
-    const double clear = assay_world_transmittance(
-        walk->world, origin, along, light->infinite ? INFINITY : SHADOW_END, &walk->counts->shadow);
+    assay_vec3   along;
+    const double clear =
+        assay_vertex_sees_light(walk->world, vertex, light, &along, &walk->counts->shadow);
     if (clear <= 0.0) {
         return;
     }
@@ -171,7 +146,7 @@ static bool draw_direction(path_walk *walk, const assay_vertex *vertex, const as
         return false;
     }
     *direction_out = frame3_to_world(&vertex->frame, sample_out->wi);
-    return sides_agree(vertex, *direction_out, sample_out->transmitted);
+    return assay_vertex_sides_agree(vertex, *direction_out, sample_out->transmitted);
 }
 
 /* What the ray from the vertex meets.  False where it meets nothing. */
@@ -204,7 +179,7 @@ static bool follow(path_walk *walk, assay_vertex *vertex, const assay_bsdf_view 
     }
     assay_hit hit;
     if (!trace_from(walk, vertex, direction, sample.transmitted, &hit)) {
-        const assay_receiver receiver = receiver_of(vertex);
+        const assay_receiver receiver = assay_vertex_as_receiver(vertex);
         const double         pdf_light =
             assay_lights_pdf_infinite(walk->world->lights, &receiver, direction);
         const assay_rgb radiance = assay_lights_infinite_radiance(walk->world->lights, direction);

@@ -26,7 +26,7 @@ assay_status assay_world_fail_light(const assay_world *world);
 /* Rays traced, by kind, and what caches made of them; each worker counts its own. */
 typedef struct {
     uint64_t camera, scatter, shadow;
-    uint64_t records;
+    uint64_t records, lost; /* lost: contributions of records that billboards leave out */
 } assay_ray_counts;
 
 static inline void assay_ray_counts_add(assay_ray_counts *sum, const assay_ray_counts *counts)
@@ -35,6 +35,7 @@ static inline void assay_ray_counts_add(assay_ray_counts *sum, const assay_ray_c
     sum->scatter += counts->scatter;
     sum->shadow += counts->shadow;
     sum->records += counts->records;
+    sum->lost += counts->lost;
 }
 
 /* Where a ray that leaves a surface starts: off the geometric normal's plane, on the side that the

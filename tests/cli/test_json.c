@@ -61,6 +61,7 @@ static void stats_of_an_image(void **state)
     assert_true(number(stats, "samples") == 12 * 10 * 3);
     assert_true(number(stats, "spp_min") == 3 && number(stats, "spp_max") == 3);
     assert_true(number(stats, "threads") == 2);
+    assert_true(number(stats, "records") == 0 && number(stats, "lost_contributions") == 0);
     assert_true(number(stats, "relative_error") > 0.0);
     assert_true(cJSON_IsNull(json_member(stats, "target_reached")));
     assert_string_equal(text(stats, "params/spp"), "3");

@@ -336,6 +336,7 @@ static void published_bounds(void **state)
     rendered lossy = rendered_make(&s.r, s.scene, SPLAT, published);
     print_message("#| %s\n", s.r.warning);
     assert_true(s.r.warnings > 0);
+    assert_true(good.stats.lost == 0 && lossy.stats.lost > 0);
     assert_true(rendered_difference(&good, &lossy, "IrradianceIndirect.G") > 1e-3);
     /* A pixel that its own record never reaches is no reason to go on for ever. */
     const setting endless[] = {

@@ -59,19 +59,36 @@ exec qemu-aarch64 -L $root -E LD_LIBRARY_PATH=$lib $PWD/build/arm64/build/assay 
 EOF
 chmod +x "$base/assay"
 failed=0
-for scene in ${ARM64_SCENES:-cornell-box cornell-box-glossy spheres}; do
+compare() { # NAME SCENE OPTIONS...
+    name=$1 scene=$2
+    shift 2
     for program in build/release/assay "$base/assay"; do
-        out=$base/$scene-$(basename "$(dirname "$program")").exr
+        out=$base/$name-$(basename "$(dirname "$program")").exr
+        rm -f "$out"
         "$program" render "scenes/$scene/$scene.gltf" --size 24x24 --spp 3 --seed 5 -q --threads 2 \
-            -o "$out"
+            -o "$out" "$@" || failed=1
     done
-    if build/release/assay diff "$base/$scene-release.exr" "$base/$scene-arm64.exr" > "$base/diff.txt"
+    if build/release/assay diff "$base/$name-release.exr" "$base/$name-arm64.exr" > "$base/diff.txt"
     then
-        echo "ok - $scene: the same pixels on aarch64"
+        echo "ok - $name: the same pixels on aarch64"
     else
         cat "$base/diff.txt"
-        echo "not ok - $scene: other pixels on aarch64"
+        echo "not ok - $name: other pixels on aarch64"
         failed=1
     fi
+}
+for scene in ${ARM64_SCENES:-cornell-box cornell-box-glossy spheres}; do
+    compare "$scene" "$scene"
 done
+if [ -z "${ARM64_SCENES:-}" ]; then
+    few="--theta-strata 4 --phi-strata 10 --grid 6 --nodes 12"
+    # shellcheck disable=SC2086
+    compare glossy-cached spheres --method radiance-cache --a 0.3 --order 5 $few \
+        --glossy-accuracy 0.8
+    # shellcheck disable=SC2086
+    compare splatted cornell-box-glossy --method splat --a 0.4 --order 8 $few \
+        --glossy-accuracy 0.8 --bounds published
+    compare rasterised colonnade --method irradiance-cache --gather raster --raster-size 16 \
+        --secondary direct --shadow map --shadow-size 64 --a 0.9
+fi
 exit $failed

@@ -48,6 +48,17 @@ static void write_frame(const splat_dump *dump, size_t pixel, double *row)
     put(row + 6, frame->z);
 }
 
+/* Geometric: nothing is gathered under it. */
+static void write_normal(const splat_dump *dump, size_t pixel, double *row)
+{
+    put(row, dump->image->points[pixel].site.ng);
+}
+
+static void write_footprint(const splat_dump *dump, size_t pixel, double *row)
+{
+    row[0] = dump->image->points[pixel].footprint;
+}
+
 static void write_albedo(const splat_dump *dump, size_t pixel, double *row)
 {
     const assay_rgb c = dump->image->lambert[pixel];
@@ -109,7 +120,9 @@ assay_status splat_dump_begin(const splat_image *image, const splat_layer *layer
     const splat_dump dump   = {.image = image, .layer = layer, .name = name};
     assay_status     status = add_table(&dump, "position", "m", 3, write_position);
     status                  = status ? status : add_table(&dump, "frame", "", 9, write_frame);
-    status                  = status ? status : add_table(&dump, "albedo", "", 3, write_albedo);
+    status = status ? status : add_table(&dump, "geometric_normal", "", 3, write_normal);
+    status = status ? status : add_table(&dump, "footprint", "m", 1, write_footprint);
+    status = status ? status : add_table(&dump, "albedo", "", 3, write_albedo);
     if (status == ASSAY_OK && layer->source.say) {
         status = add_table(&dump, "brdf", "", BRDF_COLUMNS, write_brdf);
     }

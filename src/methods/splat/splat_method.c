@@ -181,6 +181,7 @@ static assay_status render(void *state, const assay_frame *frame, assay_film *fi
                                             film, counts);
     }
     if (status == ASSAY_OK) {
+        counts->lost += s->image.lost;
         report(s);
     }
     splat_image_close(&s->image);
