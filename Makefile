@@ -201,6 +201,18 @@ figures: all ## draw the pictures of docs/methods again
 	 coarse="--a 0.4 --gradients none --r-min-pixels 8 --spp 16"; \
 	 draw irradiance-cache/one-pass --passes 1 $$coarse; \
 	 draw irradiance-cache/two-passes --passes 2 $$coarse; \
+	 truth() { $(BUILD)/assay render $$box -q --size 280x280 --spp 1 "$$@" \
+	   -o $(BUILD)/truth.exr; }; \
+	 few="--secondary direct --r-min-pixels 4 --spp 1"; \
+	 error="--debug error --reference $(BUILD)/truth.exr --exposure 0"; \
+	 truth -m irradiance-cache --layers irradiance --secondary direct --r-min-pixels 4 --a 0.15 \
+	   --gradient-limit on --theta-strata 32 --phi-strata 100; \
+	 draw irradiance-cache/error $$error $$few --a 0.3; \
+	 box=scenes/cornell-box-glossy/cornell-box-glossy.gltf; few="$$few --a 0.25 --glossy-accuracy 0"; \
+	 truth -m radiance-cache --layers split,irradiance $$few --order 15; \
+	 draw radiance-cache/records --debug records $$few; \
+	 for n in 2 5 10; do draw radiance-cache/order-$$n $$error $$few --order $$n; done; \
+	 box=scenes/cornell-box/cornell-box.gltf; \
 	 draw splat/one-pass $$coarse; \
 	 walk="--a 0.3 --r-min-pixels 4 --spp 4 --gbuffer centres"; \
 	 draw splat/a-small --splat-a 0.2 --uncovered black $$walk; \

@@ -72,7 +72,7 @@
      "[ward88]"},                                                                                 \
     {"mean", ASSAY_PARAM_CHOICE, "", "uniform", 0, 0, "uniform|cosine",                           \
      "Weight of directions in the harmonic mean distance R.",                                     \
-     ""},                                                                                         \
+     "ours"},                                                                                     \
     {"weight", ASSAY_PARAM_CHOICE, "", "ward", 0, 0, "ward|tabellion",                            \
      "Weight of a record.",                                                                       \
      "[gautron06] eq. 2.5, [tabellion04]"},                                                       \
@@ -81,13 +81,13 @@
      "[ward-heckbert92], [gautron06] eq. 2.7"},                                                   \
     {"normal_gradient", ASSAY_PARAM_BOOL, "", "off", 0, 0, NULL,                                  \
      "Translational gradients have a component along the normal, too.",                           \
-     ""},                                                                                         \
+     "ours"},                                                                                     \
     {"r_min", ASSAY_PARAM_REAL, "m", "0", 0, 1e9, NULL,                                           \
      "R is no smaller; 0: no limit.",                                                             \
-     ""},                                                                                         \
+     "ours"},                                                                                     \
     {"r_max", ASSAY_PARAM_REAL, "m", "0", 0, 1e9, NULL,                                           \
      "R is no larger; 0: the scene's diagonal.",                                                  \
-     ""},                                                                                         \
+     "ours"},                                                                                     \
     {"r_min_pixels", ASSAY_PARAM_REAL, "pixels", "0", 0, 1e6, NULL,                               \
      "R is no smaller than so many pixels at the record; 0: no limit.",                           \
      "[tabellion04]"},                                                                            \
@@ -106,7 +106,7 @@
      "[krivanek06]"},                                                                             \
     {"clamp_negative", ASSAY_PARAM_BOOL, "", "on", 0, 0, NULL,                                    \
      "What is extrapolated below 0 counts as 0.",                                                 \
-     ""},                                                                                         \
+     "ours"},                                                                                     \
     {"traversal", ASSAY_PARAM_CHOICE, "", "scanline", 0, 0, "scanline|hierarchical",              \
      "Order in which the pixels' centres ask for records.",                                       \
      "[ward88]"},                                                                                 \

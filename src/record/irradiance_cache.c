@@ -2,51 +2,15 @@
  *
  * Invariant: the store changes between waves alone, from the calling thread; workers write nothing
  * but their own scratch and counters. */
-#include "record/irradiance_cache.h"
-
-#include <string.h>
+#include "record/irradiance_cache_data.h"
 
 #include "core/alloc.h"
 #include "core/numerics.h"
 #include "core/parallel.h"
-#include "record/neighbour_clamp.h"
 
-/* Points that are looked at together.  Part of the result only with neighbour clamping, where
- * records shrink while a wave is served. */
-enum { WAVE = 4096 };
+enum { WAVE = IRRADIANCE_CACHE_WAVE, CHUNK = IRRADIANCE_CACHE_CHUNK };
 
-/* A level's hemispheres are numbered in streams of their own. */
-static const int LEVEL_SHIFT = 56;
-static const int BESIDE      = 64; /* added to the level of a cache beside another one */
-
-/* A worker's own; aligned apart by its size. */
-typedef struct {
-    assay_contributions found;
-    uint64_t            unserved;
-    uint32_t            last_reaching; /* record: a hint */
-    bool                refused;       /* memory, inside a gathering */
-    char                apart[64];
-} cache_worker;
-
-struct assay_irradiance_cache {
-    const assay_world              *world;
-    assay_context                  *context;
-    assay_irradiance_cache_settings settings;
-    uint64_t                        seed;
-    int                             level;
-    double                          diagonal; /* m, of the scene */
-    assay_record_store             *store;
-    assay_hemisphere               *hemisphere;
-    assay_ray_counts               *worker_counts;
-    cache_worker                   *workers;
-    bool                           *covered; /* WAVE                                */
-    assay_irradiance_cache         *next;
-    bool                            borrows_next; /* it belongs to another cache     */
-    assay_record_companion          companion;    /* keep NULL: none                 */
-    assay_shadow_maps              *shadows;      /* NULL without; borrowed as next is */
-    assay_gather_hit               *hits;         /* WAVE: what cells see, and ...  */
-    assay_cache_point              *seen;         /* ... ask; NULL but with secondary CACHE  */
-};
+static const int BESIDE = 64; /* added to the level of a cache beside another one */
 
 static bool allocate(assay_irradiance_cache *cache)
 {
@@ -207,7 +171,7 @@ static assay_status ask_enough(assay_irradiance_cache *cache, const assay_gather
                                int worker, bool *enough_out)
 {
     const assay_record_rules *rules = &cache->settings.rules;
-    cache_worker             *own   = &cache->workers[worker];
+    irradiance_cache_worker  *own   = &cache->workers[worker];
     if (rules->weight == ASSAY_WEIGHT_TABELLION || rules->a <= 1.0) {
         *enough_out = assay_record_store_reaches(cache->store, site->position, site->frame.z,
                                                  &own->last_reaching);
@@ -242,8 +206,8 @@ assay_status assay_irradiance_cache_find(assay_irradiance_cache *cache, assay_ve
                                          assay_vec3 normal, uint32_t limit, int worker,
                                          const assay_contributions **found_out)
 {
-    cache_worker      *own = &cache->workers[worker];
-    const assay_status status =
+    irradiance_cache_worker *own = &cache->workers[worker];
+    const assay_status       status =
         assay_record_store_find(cache->store, position, normal, limit, &own->found);
     if (status == ASSAY_OK) {
         own->unserved += own->found.count == 0;
@@ -271,227 +235,10 @@ assay_status assay_irradiance_cache_look_up(assay_irradiance_cache *cache, assay
     return ASSAY_OK;
 }
 
-/* ---- making a record ---- */
-
-/* Where a path goes on: everything that leaves the vertex, direct light among it. */
-static assay_rgb light_by_path(void *user, int cell, assay_vertex *vertex, assay_random *random,
-                               int worker)
-{
-    const assay_irradiance_cache *cache = user;
-    assay_path_settings           path  = cache->settings.path;
-    (void)cell;
-    path.bounces = cache->settings.secondary == ASSAY_SECONDARY_DIRECT ? 1
-                   : path.bounces == ASSAY_BOUNCES_INF                 ? path.bounces
-                                                                       : path.bounces - 1;
-    const assay_path_light light =
-        assay_path_scatter(cache->world, &path, vertex, random, &cache->worker_counts[worker]);
-    return rgb_add(light.direct, light.indirect);
-}
-
-static assay_rgb light_by_map(void *user, int cell, assay_vertex *vertex, assay_random *random,
-                              int worker)
-{
-    const assay_irradiance_cache *cache = user;
-    (void)cell;
-    return assay_shadow_maps_light(cache->shadows, vertex, random, &cache->worker_counts[worker]);
-}
-
-/* Where the next level answers, what it will be asked is told to it before. */
-typedef struct {
-    assay_irradiance_cache *cache;
-    size_t                  count;
-} seen_points;
-
-enum { CHUNK = 64 };
-
-static assay_status note_points(void *user, uint64_t chunk, int worker)
-{
-    const seen_points      *seen  = user;
-    assay_irradiance_cache *cache = seen->cache;
-    (void)worker;
-    for (size_t i = chunk * CHUNK; i < (chunk + 1) * CHUNK && i < seen->count; i++) {
-        cache->seen[i] = (assay_cache_point){.wanted = false};
-        if (cache->hits[i].hit) {
-            assay_vertex *vertex = &cache->hits[i].vertex;
-            assay_vertex_dress(cache->world, vertex);
-            const assay_bsdf_view view = assay_bsdf_seen_from(&vertex->bsdf, vertex->wo_local);
-            cache->seen[i]             = (assay_cache_point){
-                            .site   = assay_gather_site_of(vertex),
-                            .wanted = !rgb_is_black(assay_bsdf_view_lambert(&view)),
-            };
-        }
-    }
-    return ASSAY_OK;
-}
-
-static assay_rgb light_by_cache(void *user, int cell, assay_vertex *vertex, assay_random *random,
-                                int worker)
-{
-    assay_irradiance_cache *cache  = user;
-    assay_ray_counts       *counts = &cache->worker_counts[worker];
-    assay_path_settings     path   = cache->next->settings.path;
-    (void)cell;
-    const assay_bsdf_view view    = assay_bsdf_seen_from(&vertex->bsdf, vertex->wo_local);
-    const assay_rgb       lambert = assay_bsdf_view_lambert(&view);
-    assay_rgb             cached  = rgb_grey(0.0);
-    if (!rgb_is_black(lambert)) {
-        const assay_gather_site site = assay_gather_site_of(vertex);
-        if (assay_irradiance_cache_look_up(cache->next, site.position, site.frame.z, UINT32_MAX,
-                                           worker, &cached) != ASSAY_OK) {
-            cache->workers[worker].refused = true;
-            return rgb_grey(NAN);
-        }
-        cached = rgb_scale(rgb_mul(cached, lambert), ASSAY_INV_PI);
-    }
-    if (vertex->bsdf.model != ASSAY_BSDF_LAMBERT) {
-        cached = rgb_add(cached,
-                         assay_path_indirect(cache->world, &path, vertex, lambert, random, counts));
-    }
-    path.bounces = 1;
-    return rgb_add(cached, assay_path_scatter(cache->world, &path, vertex, random, counts).direct);
-}
-
-/* Asks the next level to know enough wherever a block of cells looks, and then for the light. */
-static assay_status gather_block(assay_irradiance_cache *cache, const assay_gatherer *gatherer,
-                                 const assay_gather_site *site, uint64_t item, int first, int count)
-{
-    seen_points  seen = {cache, (size_t)count};
-    assay_status status =
-        assay_gather_rays(gatherer, site, item, first, count, cache->hemisphere, cache->hits);
-    status = status ? status
-                    : assay_parallel_for(cache->context, NULL, (seen.count + CHUNK - 1) / CHUNK,
-                                         note_points, &seen);
-    status = status ? status
-                    : assay_irradiance_cache_fill(cache->next, NULL, 0, 0, seen.count, cache->seen,
-                                                  NULL);
-    return status ? status
-                  : assay_gather_light(gatherer, first, count, cache->hits, cache->hemisphere);
-}
-
-static assay_status gather(assay_irradiance_cache *cache, const assay_gather_site *site)
-{
-    const assay_gatherer gatherer = {.world         = cache->world,
-                                     .seed          = cache->seed,
-                                     .radiance      = cache->next      ? light_by_cache
-                                                      : cache->shadows ? light_by_map
-                                                                       : light_by_path,
-                                     .user          = cache,
-                                     .worker_counts = cache->worker_counts};
-    const uint64_t       item =
-        (uint64_t)cache->level << LEVEL_SHIFT | assay_record_store_count(cache->store);
-    if (!cache->next) {
-        return assay_gather(&gatherer, site, item, cache->hemisphere);
-    }
-    const int    cells  = cache->settings.layout.theta * cache->settings.layout.phi;
-    assay_status status = ASSAY_OK;
-    for (int first = 0; first < cells && status == ASSAY_OK; first += WAVE) {
-        const int count = cells - first < WAVE ? cells - first : WAVE;
-        status          = gather_block(cache, &gatherer, site, item, first, count);
-    }
-    for (int i = 0; status != ASSAY_OK && i < assay_context_threads(cache->context); i++) {
-        if (cache->workers[i].refused) {
-            return assay_fail_memory(cache->context, "a look into the irradiance cache");
-        }
-    }
-    return status;
-}
-
-static void to_world(const assay_frame3 *frame, assay_vec3 gradient[3])
-{
-    for (int c = 0; c < 3; c++) {
-        gradient[c] = frame3_to_world(frame, gradient[c]);
-    }
-}
-
-/* How far the light may go on changing as it does here until nothing is left of it, m. */
-static double gradient_distance(const assay_record *record)
-{
-    const assay_rgb  e = record->irradiance;
-    const assay_vec3 t =
-        vec3_add(vec3_add(record->translation[0], record->translation[1]), record->translation[2]);
-    const double change = vec3_length(t);
-    return change > 0.0 ? (e.r + e.g + e.b) / change : INFINITY;
-}
-
-/* A radius that was made larger than that distance (by its lower limit, or where channels differ)
- * would have the record say much more, or less than nothing, within it. */
-static void limit_gradient(assay_record *record)
-{
-    const double e[3] = {record->irradiance.r, record->irradiance.g, record->irradiance.b};
-    for (int c = 0; c < 3; c++) {
-        const double change = vec3_length(record->translation[c]) * record->radius;
-        if (change > e[c]) {
-            record->translation[c] = vec3_scale(record->translation[c], e[c] / change);
-        }
-    }
-}
-
-/* R_k from what was seen: limits of the settings last, the lower one strongest. */
-static assay_status find_radius(assay_irradiance_cache *cache, const assay_cache_point *point,
-                                assay_record *record)
-{
-    const assay_irradiance_cache_settings *s         = &cache->settings;
-    const bool                             tabellion = s->rules.weight == ASSAY_WEIGHT_TABELLION;
-    double radius = tabellion ? 0.5 * record->nearest : record->mean;
-    /* Where nothing is seen the light changes nowhere, as far as one can tell. */
-    radius = radius < cache->diagonal ? radius : cache->diagonal;
-    if (s->gradient_limit) {
-        radius = fmin(radius, gradient_distance(record));
-    }
-    if (s->neighbour_clamp) {
-        const assay_status status =
-            assay_neighbour_clamp_record(cache->store, record->position, &radius);
-        if (status != ASSAY_OK) {
-            return status;
-        }
-    }
-    double least = s->r_min, most = s->r_max;
-    if (point->footprint > 0.0) {
-        least = fmax(least, s->r_min_pixels * point->footprint);
-        most  = fmin(most, s->r_max_pixels * point->footprint);
-    }
-    radius         = radius < most ? radius : most;
-    radius         = radius > least ? radius : least;
-    record->radius = radius > 0.0 ? radius : cache->world->offset;
-    return ASSAY_OK;
-}
-
-static assay_status make_record(assay_irradiance_cache *cache, const assay_cache_point *point)
-{
-    const assay_irradiance_cache_settings *s      = &cache->settings;
-    const assay_gather_site               *site   = &point->site;
-    assay_status                           status = gather(cache, site);
-    if (status != ASSAY_OK) {
-        return status;
-    }
-    assay_record record = {.position   = site->position,
-                           .normal     = site->frame.z,
-                           .mean       = assay_hemisphere_harmonic_mean(cache->hemisphere, s->mean),
-                           .nearest    = assay_hemisphere_nearest(cache->hemisphere),
-                           .irradiance = assay_hemisphere_irradiance(cache->hemisphere)};
-    assay_hemisphere_rotation_gradient(cache->hemisphere, record.rotation);
-    assay_hemisphere_translation_gradient(cache->hemisphere, s->normal_gradient,
-                                          record.translation);
-    to_world(&site->frame, record.rotation);
-    to_world(&site->frame, record.translation);
-    status = find_radius(cache, point, &record);
-    if (s->gradient_limit) {
-        limit_gradient(&record);
-    }
-    if (status == ASSAY_OK && s->neighbour_clamp) {
-        status = assay_neighbour_clamp_others(cache->store, &record, cache->diagonal);
-    }
-    if (status == ASSAY_OK && cache->companion.keep) {
-        status = cache->companion.keep(cache->companion.user,
-                                       assay_record_store_count(cache->store), cache->hemisphere);
-    }
-    return status ? status : assay_record_store_add(cache->store, &record);
-}
-
 assay_status assay_irradiance_cache_make(assay_irradiance_cache  *cache,
                                          const assay_cache_point *point)
 {
-    const assay_status status = make_record(cache, point);
+    const assay_status status = irradiance_cache_add_record(cache, point);
     return status == ASSAY_ERR_MEMORY ? assay_fail_memory(cache->context, "the irradiance cache")
                                       : status;
 }
@@ -527,7 +274,7 @@ static assay_status serve(assay_irradiance_cache *cache, const assay_cache_point
         assay_record_store_count(cache->store) >= cache->settings.max_records) {
         return status;
     }
-    return make_record(cache, point);
+    return irradiance_cache_add_record(cache, point);
 }
 
 assay_status assay_irradiance_cache_fill(assay_irradiance_cache *cache, const char *phase,

@@ -5,7 +5,8 @@
  * something near is known by its neighbours' smaller radii.
  *
  * Invariant: after both calls, |R_i - R_j| <= |p_i - p_j| for the new record and each of the
- * others. */
+ * others, but where a limit of the settings has raised the new one's between them: then it is
+ * R_j - R_i alone that is bounded. */
 #include "record/neighbour_clamp.h"
 
 typedef struct {

@@ -96,8 +96,8 @@ static assay_status check(assay_context *context, const assay_radiance_turn_sett
     }
     if (half && s->tilt_max > 0.5 * ASSAY_PI) {
         return assay_fail(context, ASSAY_ERR_ARGUMENT,
-                          "this way of rotating is undefined beyond 90 degrees, and records tilted "
-                          "by up to %.3g degrees would contribute; a must be smaller",
+                          "the rotations digon and analytical are undefined beyond 90 degrees, and "
+                          "records tilted by up to %.3g would contribute; a must be smaller",
                           s->tilt_max * (180.0 / ASSAY_PI));
     }
     if (s->steps < 1) {

@@ -11,9 +11,9 @@ number=0
 while IFS= read -r line; do
     case $line in "#"* | "") continue ;; esac
     number=$((number + 1))
-    file=$(echo "$line" | sed 's/ ; .*//')
-    change=$(echo "$line" | sed 's/^[^;]* ; //; s/ ; [^;]*$//')
-    test=$(echo "$line" | sed 's/.* ; //')
+    file=$(printf '%s\n' "$line" | sed 's/ ; .*//')
+    change=$(printf '%s\n' "$line" | sed 's/^[^;]* ; //; s/ ; [^;]*$//')
+    test=$(printf '%s\n' "$line" | sed 's/.* ; //')
     unit=${file##* in }
     file=${file%% in *}
     rm -rf "$folder/src"
@@ -22,15 +22,15 @@ while IFS= read -r line; do
     sed "$change" "$file" > "$mutant"
     [ "$unit" != "$file" ] || unit=$mutant
     if cmp -s "$file" "$mutant"; then
-        echo "not ok $number - $file: the expression changes nothing: $change"
+        printf '%s\n' "not ok $number - $file: the expression changes nothing: $change"
     elif ! $MUTANT_COMPILE -iquote "$folder/src" -I"$(dirname "$file")" -w -c "$unit" -o "$folder/mutant.o" ||
          ! $MUTANT_LINK "$folder/mutant.o" "$BUILD/tests/$test.o" -o "$folder/mutant.bin" \
                $MUTANT_LIBS; then
-        echo "not ok $number - $file: the mutant does not build: $change"
+        printf '%s\n' "not ok $number - $file: the mutant does not build: $change"
     elif timeout 300 "$folder/mutant.bin" > /dev/null 2>&1; then
-        echo "not ok $number - $file: $test does not see: $change"
+        printf '%s\n' "not ok $number - $file: $test does not see: $change"
     else
-        echo "ok $number - $test sees $(basename "$file"): $change"
+        printf '%s\n' "ok $number - $test sees $(basename "$file"): $change"
     fi
 done < "${MUTANTS:-tests/mutants/mutants.txt}"
-echo "1..$number"
+printf '%s\n' "1..$number"

@@ -109,7 +109,9 @@ assay_array *measure_probes(assay_scene *scene, const setting *settings, const d
     assay_array   *table = NULL, *result = NULL;
     require(context, assay_array_create(context, (size_t)count, 6, &table));
     memcpy(assay_array_data(table), points, (size_t)count * 6 * sizeof *points);
-    const assay_status status = assay_render_probes(scene, "path", params, 1, table, &result, NULL);
+    const uint64_t     seed = strtoull(special(settings, "seed", "1"), NULL, 10);
+    const assay_status status =
+        assay_render_probes(scene, "path", params, seed, table, &result, NULL);
     assay_array_destroy(table);
     assay_params_destroy(params);
     assert_int_equal(status, ASSAY_OK);
