@@ -1,6 +1,10 @@
 /* radiance_params.c - from parameters to the settings of a radiance cache. */
 #include "methods/radiance_params.h"
 
+#include <string.h>
+
+#include "core/context.h"
+
 assay_status assay_radiance_params_read(assay_context *context, const assay_params *params,
                                         assay_radiance_params *radiance_out)
 {
@@ -19,6 +23,12 @@ assay_status assay_radiance_params_read(assay_context *context, const assay_para
                      .beyond_lambert = true},
         .accuracy = assay_params_real(params, "glossy_accuracy"),
     };
+    if (r.cache.gradient == ASSAY_COEFFICIENT_GRADIENT_POINTS &&
+        strcmp(assay_params_text(params, "gather"), "raster") == 0) {
+        return assay_fail(context, ASSAY_ERR_ARGUMENT,
+                          "parameter 'coefficient_gradient' is points, which gather=raster does "
+                          "not have");
+    }
     const assay_status status =
         assay_material_grids_check_work(context, r.grid.side, r.grid.nodes, r.cache.order);
     if (status == ASSAY_OK) {

@@ -43,7 +43,8 @@ typedef struct {
     double                        accuracy;
 } assay_radiance_params;
 
-/* What the rows above say.  Errors: ARGUMENT (a grid that takes hours). */
+/* What the rows above say; params have those of ASSAY_CACHE_PARAMS, too.  Errors: ARGUMENT (a grid
+ * that takes hours; gradients that gathering does not have). */
 assay_status assay_radiance_params_read(assay_context *context, const assay_params *params,
                                         assay_radiance_params *radiance_out);
 

@@ -61,7 +61,8 @@ typedef struct {
 } assay_neighbourhood;
 
 /* A list of them, ascending by number; a worker's scratch, made with zeros and released at the
- * end (before its context is destroyed). */
+ * end (before its context is destroyed).  It remembers the store that it was filled from, so it
+ * must not be filled again after that store is destroyed. */
 typedef struct {
     assay_context            *context; /* set by the first query */
     assay_contribution       *items;

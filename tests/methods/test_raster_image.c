@@ -252,7 +252,8 @@ static void settings_that_exclude(void **state)
         {"irradiance-cache",
          {{"shadow", "map"}, {"secondary", "direct"}, {"shadow_taps", "15"}},
          "taps"},
-        {"radiance-cache", {{"gather", "raster"}, {"coefficient_gradient", "points"}}, "points"}};
+        {"radiance-cache", {{"gather", "raster"}, {"coefficient_gradient", "points"}}, "points"},
+        {"splat", {{"gather", "raster"}, {"coefficient_gradient", "points"}}, "points"}};
     assay_context *context = measure_context(1);
     assay_scene   *scene   = room(context);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

@@ -91,12 +91,6 @@ static assay_status create(assay_context *context, const assay_params *params, v
     status =
         status ? status
                : assay_cache_params_read(context, params, &state->settings.records, &state->image);
-    if (status == ASSAY_OK && state->settings.gradient == ASSAY_COEFFICIENT_GRADIENT_POINTS &&
-        state->settings.records.layout.strata == ASSAY_STRATA_PLANE) {
-        status = assay_fail(context, ASSAY_ERR_ARGUMENT,
-                            "parameter 'coefficient_gradient' is points, which gather=raster does "
-                            "not have");
-    }
     status = status ? status : assay_cache_session_create(context, params, &state->session);
     if (status != ASSAY_OK) {
         destroy(state);

@@ -12,8 +12,7 @@ static const assay_param_desc PARAMS[] = {
     ASSAY_RADIANCE_PARAMS,
     {"gbuffer", ASSAY_PARAM_CHOICE, "", "samples", 0, 0, "samples|centres",
      "Points that are splatted on: every camera sample, one after the other, or the pixels' "
-     "centres "
-     "alone, whose indirect light all samples of a pixel take.",
+     "centres alone, whose indirect light all samples of a pixel take.",
      "[gautron06] algorithm 4"},
     {"bounds", ASSAY_PARAM_CHOICE, "", "exact", 0, 0, "exact|published",
      "Pixels that a record is splatted on: bounds of its sphere that lose none, or a square at the "
