@@ -20,12 +20,13 @@ typedef struct {
     const double  *values;                  /* rows of columns                              */
     size_t         rows, columns;
     double         roundoff; /* unit roundoff of the type that its file holds               */
+    const char    *unit;     /* borrowed from the manifest */
 } stage_table;
 
 /* An array that is written. */
 typedef struct {
     char          name[ASSAY_BUNDLE_NAME];
-    const assay_stage_array *desc;
+    const char   *unit;
     size_t        rows, columns;
     double       *values;
     double       *bounds; /* NULL where none are asked; NaN: of this number nothing is known   */
@@ -34,8 +35,8 @@ typedef struct {
 /* One run of a stage. */
 typedef struct {
     assay_context      *context;
-    const struct stage *stage;
-    const assay_params *params;
+    const struct oracle_stage *stage;
+    assay_params       *params;
     assay_bundle_reader *bundle;
     const assay_scene  *scene; /* NULL without */
     bool                bounded;
@@ -46,23 +47,28 @@ typedef struct {
     int                 out_count;
 } stage_run;
 
-typedef struct stage {
+typedef struct oracle_stage {
     assay_stage_info info;
     assay_status (*run)(stage_run *run);
-} stage;
+} oracle_stage;
 
 /* The stages in the order of the data's way. */
-extern const stage *const assay_stages[];
+extern const oracle_stage *const assay_stages[];
 /* NULL where there is none of that name. */
-const stage *assay_stage_find(const char *name);
+const oracle_stage *assay_stage_find(const char *name);
 
 /* Makes an output (zeros) of the stage's description `index`; number: for names with a '#'.
  * Errors: MEMORY, LIMIT. */
 assay_status stage_output_make(stage_run *run, int index, int number, size_t rows, size_t columns,
                                stage_output **output_out);
 
+/* Says that no bound is known of the output. */
+void stage_output_unknown(const stage_output *output);
+
 /* FORMAT: an input has not as many rows as another one. */
 assay_status stage_fail_rows(const stage_run *run, int input, size_t wanted, const char *why);
+/* FORMAT: an input has not so many columns. */
+assay_status stage_fail_columns(const stage_run *run, int input, size_t wanted);
 /* DOMAIN: a number of an input. */
 assay_status stage_fail_value(const stage_run *run, int input, size_t row, size_t column,
                               const char *why);
@@ -70,7 +76,7 @@ assay_status stage_fail_value(const stage_run *run, int input, size_t row, size_
 /* Reads the inputs, checks them and runs.  precision: NULL for values alone.  overrides: "key=value"
  * texts before the manifest's.  Release either way.  Errors: those of bundles, ARGUMENT, DOMAIN, the
  * stage's own. */
-assay_status stage_run_start(stage_run *run, assay_context *context, const stage *stage,
+assay_status stage_run_start(stage_run *run, assay_context *context, const oracle_stage *stage,
                              assay_bundle_reader *bundle, const assay_scene *scene,
                              const assay_precision *precision, int override_count,
                              const char *const *overrides);
@@ -80,6 +86,6 @@ void         stage_run_release(stage_run *run);
 const char *stage_manifest_text(const assay_bundle_reader *bundle, const char *name);
 
 /* Whether the bundle has what the stage needs. */
-bool stage_can_run(const stage *stage, const assay_bundle_reader *bundle);
+bool stage_can_run(const oracle_stage *stage, const assay_bundle_reader *bundle);
 
 #endif
