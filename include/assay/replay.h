@@ -18,7 +18,7 @@ typedef struct {
     const char *name;     /* "records/position"; '#' in it stands for a whole number; NULL ends a
                              table                                                            */
     const char *unit;     /* as the manifest has it; "" where it has none; NULL: any, and an output
-                             has that of the first input                                      */
+                             has that of the first such input                                    */
     const char *channels; /* "X Y Z": of an image, and how many columns a table has; NULL: any */
     const char *rows;     /* "record": what a row is, in words                                */
     const char *what;     /* in words                                                         */
