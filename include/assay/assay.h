@@ -14,5 +14,6 @@
 #include "assay/status.h"
 #include "assay/types.h"
 #include "assay/verdict.h"
+#include "assay/verify.h"
 
 #endif
