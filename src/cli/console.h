@@ -47,5 +47,6 @@ int cli_scene(int count, char **argv);
 int cli_methods(int count, char **argv);
 int cli_diff(int count, char **argv);
 int cli_basis(int count, char **argv);
+int cli_verify(int count, char **argv);
 
 #endif

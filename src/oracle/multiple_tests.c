@@ -13,7 +13,8 @@
 
 assay_multiple_tests assay_multiple_tests_start(assay_context *context, double level)
 {
-    return (assay_multiple_tests){.context = context, .log_level = assay_log(level)};
+    return (assay_multiple_tests){
+        .context = context, .level = level, .log_level = assay_log(level)};
 }
 
 static bool make_room(assay_multiple_tests *tests, size_t more)
@@ -89,10 +90,14 @@ assay_status assay_multiple_tests_decide(assay_multiple_tests *tests, assay_corr
     if (tests->kept_count > 1) {
         qsort(tests->kept, tests->kept_count, sizeof *tests->kept, compare);
     }
-    *decision_out = (assay_multiple_decision){
-        .tests     = tests->count,
-        .rejected  = correction == ASSAY_CORRECTION_HOLM ? holm(tests) : benjamini_hochberg(tests),
-        .log_bound = tests->log_level - assay_log(fmax(1.0, (double)tests->count))};
+    const bool     holms    = correction == ASSAY_CORRECTION_HOLM;
+    const uint64_t rejected = holms ? holm(tests) : benjamini_hochberg(tests);
+    /* The step at which the rule stopped. */
+    const double last = holms ? 1.0 / fmax(1.0, (double)(tests->count - rejected))
+                              : fmax(1.0, (double)rejected) / fmax(1.0, (double)tests->count);
+    *decision_out     = (assay_multiple_decision){.tests     = tests->count,
+                                                  .rejected  = rejected,
+                                                  .log_bound = tests->log_level + assay_log(last)};
     return ASSAY_OK;
 }
 

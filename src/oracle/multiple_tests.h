@@ -21,7 +21,7 @@ typedef struct {
 
 typedef struct {
     assay_context *context;
-    double         log_level;
+    double         level, log_level;
     uint64_t       count; /* tests added, kept or not */
     assay_small_p *kept;  /* those with p <= level    */
     size_t         kept_count, capacity;
@@ -29,9 +29,9 @@ typedef struct {
 } assay_multiple_tests;
 
 typedef struct {
-    uint64_t tests;     /* that were made                                     */
-    uint64_t rejected;  /* of them                                            */
-    double   log_bound; /* log p at or below which the least p is significant */
+    uint64_t tests;     /* that were made                                                        */
+    uint64_t rejected;  /* of them                                                               */
+    double   log_bound; /* what is rejected has a log p at or below it, what is not above it     */
 } assay_multiple_decision;
 
 assay_multiple_tests assay_multiple_tests_start(assay_context *context, double level);
