@@ -32,6 +32,9 @@ typedef struct {
     double candidate_variance, reference_variance;
     double candidate_spread, reference_spread; /* squares of variances over their degrees        */
     double squares;                            /* of the difference                             */
+    /* What the noise model makes of either image's variance alone; 0 before it was asked. */
+    double by_reference, by_reference_spread;
+    double by_candidate, by_candidate_spread;
 } assay_noisy_sums;
 
 static inline double assay_noisy_degrees(const assay_noisy_channel *channel, size_t pixel)
@@ -46,16 +49,16 @@ static inline assay_noisy_sums assay_noisy_pixel(const assay_noisy_pair *pair, s
     const double               x = c->mean[pixel], y = r->mean[pixel], d = x - y;
     const double               vc = c->variance ? c->variance[pixel] : 0.0;
     const double               vr = r->variance ? r->variance[pixel] : 0.0;
-    return (assay_noisy_sums){1.0,
-                              d,
-                              x,
-                              y,
-                              c->rounding * fabs(x) + r->rounding * fabs(y),
-                              vc,
-                              vr,
-                              vc * vc / assay_noisy_degrees(c, pixel),
-                              vr * vr / assay_noisy_degrees(r, pixel),
-                              d * d};
+    return (assay_noisy_sums){.pixels             = 1.0,
+                              .difference         = d,
+                              .candidate          = x,
+                              .reference          = y,
+                              .rounding           = c->rounding * fabs(x) + r->rounding * fabs(y),
+                              .candidate_variance = vc,
+                              .reference_variance = vr,
+                              .candidate_spread   = vc * vc / assay_noisy_degrees(c, pixel),
+                              .reference_spread   = vr * vr / assay_noisy_degrees(r, pixel),
+                              .squares            = d * d};
 }
 
 static inline void assay_noisy_add(assay_noisy_sums *sums, const assay_noisy_sums *more)
@@ -70,6 +73,10 @@ static inline void assay_noisy_add(assay_noisy_sums *sums, const assay_noisy_sum
     sums->candidate_spread += more->candidate_spread;
     sums->reference_spread += more->reference_spread;
     sums->squares += more->squares;
+    sums->by_reference += more->by_reference;
+    sums->by_reference_spread += more->by_reference_spread;
+    sums->by_candidate += more->by_candidate;
+    sums->by_candidate_spread += more->by_candidate_spread;
 }
 
 #endif

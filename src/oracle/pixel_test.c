@@ -39,11 +39,9 @@ typedef struct {
 double assay_pixel_t(const assay_noisy_pair *pair, const assay_noise_model *model, size_t pixel,
                      assay_noise *noise_out)
 {
-    const assay_noisy_sums sums = assay_noisy_pixel(pair, pixel);
-    assay_noise_model      one  = *model;
-    one.alone                   = false; /* one difference says nothing about its own variance */
-    one.design                  = 1.0;
-    *noise_out                  = assay_noise_of(&one, &sums);
+    const assay_noisy_sums sums  = assay_noisy_pixel(pair, pixel);
+    const size_t           width = (size_t)pair->width;
+    *noise_out = assay_noise_of_pixel(model, &sums, (int)(pixel % width), (int)(pixel / width));
     return assay_noise_t(&sums, *noise_out);
 }
 
@@ -63,11 +61,14 @@ static void count_firefly(assay_fireflies *flies, size_t pixel, double differenc
 
 static void look_for_fireflies(const pixel_job *job, row_result *row, size_t pixel)
 {
-    const assay_noisy_sums s = assay_noisy_pixel(job->pair, pixel);
+    const assay_noisy_sums   s     = assay_noisy_pixel(job->pair, pixel);
+    const size_t             width = (size_t)job->pair->width;
+    const assay_local_noise *local =
+        assay_noise_near(job->model, (int)(pixel % width), (int)(pixel / width));
     count_firefly(&row->candidate, pixel, s.difference, s.candidate_variance,
-                  job->model->ratio_up * s.reference_variance, s.reference_variance);
+                  fmax(local->up * s.reference_variance, local->candidate), s.reference_variance);
     count_firefly(&row->reference, pixel, -s.difference, s.reference_variance,
-                  job->model->ratio_down * s.candidate_variance, s.candidate_variance);
+                  fmax(local->down * s.candidate_variance, local->reference), s.candidate_variance);
 }
 
 static assay_status test_row(void *user, uint64_t index, int worker)

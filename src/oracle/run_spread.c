@@ -30,7 +30,18 @@ static assay_status sum_run(assay_context *context, const float *run, const assa
     assay_noisy_pair one   = *pair;
     one.candidate.mean     = run;
     one.candidate.variance = NULL;
-    return assay_tile_sums_make(context, &one, side, sums_out);
+    assay_tile_sums sums;
+    assay_status    status = assay_tile_sums_make(context, &one, side, &sums);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    status = assay_tile_sums_gather(&sums);
+    if (status != ASSAY_OK) {
+        assay_tile_sums_release(&sums);
+        return status;
+    }
+    *sums_out = sums;
+    return ASSAY_OK;
 }
 
 /* Adds a run's sum to Welford's recurrence. */

@@ -71,26 +71,32 @@ assay_status assay_tile_sums_make(assay_context *context, const assay_noisy_pair
     if (status == ASSAY_OK) {
         status = assay_parallel_for(context, NULL, (uint64_t)sums.levels[0].rows, sum_row, &job);
     }
-    while (status == ASSAY_OK && sums.level_count < ASSAY_TILE_LEVELS) {
-        assay_tile_level      *from = &sums.levels[sums.level_count - 1];
-        const assay_tile_level next =
-            level_of(pair->width, pair->height, from->side * ASSAY_TILE_STEP);
-        if (next.count < ASSAY_TILE_STEP) {
-            break;
-        }
-        status = allocate(&sums, next);
-        if (status == ASSAY_OK) {
-            gather(from, &sums.levels[sums.level_count - 1]);
-        }
-    }
     if (status != ASSAY_OK) {
         assay_tile_sums_release(&sums);
         return status;
     }
-    for (size_t i = 0; i < sums.levels[0].count; i++) {
-        assay_noisy_add(&sums.whole, &sums.levels[0].sums[i]);
-    }
     *sums_out = sums;
+    return ASSAY_OK;
+}
+
+assay_status assay_tile_sums_gather(assay_tile_sums *sums)
+{
+    while (sums->level_count < ASSAY_TILE_LEVELS) {
+        const assay_tile_level *from = &sums->levels[sums->level_count - 1];
+        const assay_tile_level  next =
+            level_of(sums->width, sums->height, from->side * ASSAY_TILE_STEP);
+        if (next.count < ASSAY_TILE_STEP) {
+            break;
+        }
+        const assay_status status = allocate(sums, next);
+        if (status != ASSAY_OK) {
+            return status;
+        }
+        gather(from, &sums->levels[sums->level_count - 1]);
+    }
+    for (size_t i = 0; i < sums->levels[0].count; i++) {
+        assay_noisy_add(&sums->whole, &sums->levels[0].sums[i]);
+    }
     return ASSAY_OK;
 }
 

@@ -25,9 +25,12 @@ typedef struct {
     assay_noisy_sums whole;
 } assay_tile_sums;
 
-/* In parallel; the sums do not depend on threads.  Errors: MEMORY, CANCELLED. */
+/* The smallest tiles, in parallel; the sums do not depend on threads.  Errors: MEMORY, CANCELLED.
+ */
 assay_status assay_tile_sums_make(assay_context *context, const assay_noisy_pair *pair, int side,
                                   assay_tile_sums *sums_out);
+/* The larger tiles and the whole, as sums of the smallest.  Errors: MEMORY. */
+assay_status assay_tile_sums_gather(assay_tile_sums *sums);
 void         assay_tile_sums_release(assay_tile_sums *sums);
 
 /* Where a tile of a level is. */

@@ -40,14 +40,24 @@ static const uint32_t *find_count(const assay_image *image, const char *name)
                : NULL;
 }
 
+static double most_samples(const assay_noisy_channel *channel, size_t pixels)
+{
+    double most = channel->samples;
+    for (size_t i = 0; channel->count && i < pixels; i++) {
+        most = fmax(most, channel->count[i]);
+    }
+    return most;
+}
+
 static assay_noisy_channel find_noisy(const assay_image *image, const char *name, uint32_t samples,
                                       double unit)
 {
+    const size_t pixels = (size_t)assay_image_width(image) * (size_t)assay_image_height(image);
     assay_noisy_channel channel = {.mean     = find_float(image, "", name),
                                    .variance = find_float(image, "Variance.", name),
                                    .count    = samples ? NULL : find_count(image, name),
                                    .samples  = samples};
-    channel.rounding = rounding_of(unit, channel.count ? channel.count[0] : channel.samples);
+    channel.rounding            = rounding_of(unit, most_samples(&channel, pixels));
     return channel;
 }
 
@@ -98,13 +108,14 @@ static bool check_values(assay_verify_channel *channel, const assay_noisy_channe
 }
 
 /* Whether a variance says something: not where a pixel has a single sample, nor where it is 0
- * everywhere and nobody says of how many samples. */
+ * everywhere and nobody says of how many samples.  Pixels without any, where nothing is hit, are 0
+ * in both images. */
 static bool variance_known(const assay_noisy_channel *noisy, size_t pixels)
 {
     bool zero = true;
     for (size_t i = 0; noisy->variance && i < pixels; i++) {
         zero = zero && noisy->variance[i] == 0.0f;
-        if (noisy->count && noisy->count[i] < 2) {
+        if (noisy->count && noisy->count[i] == 1) {
             return false;
         }
     }
@@ -186,17 +197,14 @@ static assay_status fit_runs(assay_context *context, const assay_image *const *c
 
 /* ---- together ---- */
 
-static assay_status fit(assay_context *context, assay_verify_channel *channel)
+/* Where equivalence is tested, a candidate without variance is taken as it is. */
+static assay_noise_model_kind model_kind(const assay_verify_channel *channel,
+                                         const assay_verify_options *options)
 {
-    const assay_tile_level *tiles   = &channel->sums.levels[0];
-    double                 *scratch = assay_allocate(context, tiles->count, sizeof *scratch);
-    if (!scratch) {
-        return assay_fail_memory(context, "the noise of tiles");
-    }
-    channel->model = assay_noise_model_fit(tiles->sums, tiles->count,
-                                           channel->source == ASSAY_NOISE_ALONE, scratch);
-    assay_release(context, scratch);
-    return ASSAY_OK;
+    const bool equivalence = !isnan(options->allow) || !isnan(options->allow_absolute);
+    return channel->source != ASSAY_NOISE_ALONE ? ASSAY_NOISE_MODEL_BOTH
+           : equivalence                        ? ASSAY_NOISE_MODEL_FIXED
+                                                : ASSAY_NOISE_MODEL_ALONE;
 }
 
 static void find_pair(const assay_image *const *candidates, int count, const assay_image *reference,
@@ -248,23 +256,23 @@ assay_status assay_verify_channel_prepare(assay_context            *context,
         return status;
     }
     status = assay_tile_sums_make(context, &channel->pair, options->tile, &channel->sums);
-    status = status != ASSAY_OK ? status : fit(context, channel);
+    if (status == ASSAY_OK) {
+        status = assay_noise_model_fit(context, &channel->sums.levels[0],
+                                       model_kind(channel, options), &channel->model);
+    }
+    status = status != ASSAY_OK ? status : assay_tile_sums_gather(&channel->sums);
     if (status == ASSAY_OK && channel->source == ASSAY_NOISE_RUNS) {
         status = fit_runs(context, candidates, count, channel);
     }
     return status;
 }
 
-void assay_verify_channel_drop_pixels(assay_context *context, assay_verify_channel *channel)
+void assay_verify_channel_release(assay_context *context, assay_verify_channel *channel)
 {
     assay_release(context, channel->run_mean);
     assay_release(context, channel->run_variance);
     channel->run_mean = channel->run_variance = NULL;
-}
-
-void assay_verify_channel_release(assay_context *context, assay_verify_channel *channel)
-{
-    assay_verify_channel_drop_pixels(context, channel);
+    assay_noise_model_release(&channel->model);
     if (channel->sums.context) {
         assay_tile_sums_release(&channel->sums);
     }
@@ -273,9 +281,7 @@ void assay_verify_channel_release(assay_context *context, assay_verify_channel *
 assay_noise assay_verify_channel_noise(const assay_verify_channel *channel, int level,
                                        const assay_noisy_sums *sums)
 {
-    assay_noise_model model = channel->model;
-    model.design            = channel->design[level];
-    assay_noise noise       = assay_noise_of(&model, sums);
+    assay_noise noise = assay_noise_of_region(&channel->model, sums, channel->design[level]);
     if (level == ASSAY_TILE_LEVELS && channel->whole_degrees > 0.0) {
         const double variance = channel->whole_run_variance + sums->reference_variance;
         if (variance > noise.variance) {

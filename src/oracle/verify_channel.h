@@ -42,8 +42,6 @@ assay_status assay_verify_channel_prepare(assay_context            *context,
                                           const assay_verify_options *options,
                                           assay_verify_channel       *channel);
 
-/* Releases what is as large as an image; sums stay. */
-void assay_verify_channel_drop_pixels(assay_context *context, assay_verify_channel *channel);
 void assay_verify_channel_release(assay_context *context, assay_verify_channel *channel);
 
 /* Variance of the sum of differences over a tile of a level, or the whole (tile NULL). */
