@@ -410,7 +410,7 @@ static assay_status read_listed_image(const assay_bundle_reader *reader,
 assay_status assay_bundle_read_array(const assay_bundle_reader *reader, const char *name,
                                      const char *channels, assay_array **table_out)
 {
-    assay_bundle_entry entry;
+    assay_bundle_entry entry  = {.name = NULL};
     const assay_status status = assay_bundle_entry_of(reader, name, &entry);
     if (status != ASSAY_OK) {
         return status;

@@ -344,7 +344,7 @@ static double few_function(const few_digits *f, bool hemisphere, int l, int m, a
     return m == 0 ? p : few(f, few(f, few(f, sqrt(2.0)) * p) * part);
 }
 
-/* last: of the highest band alone. */
+/* last: of m = 0 of the highest band alone, whose recurrence is the longest. */
 static bound_use use_projection(assay_context *context, int precision, bool hemisphere, int order,
                                 bool planted, bound_use *last)
 {
@@ -388,7 +388,7 @@ static bound_use use_projection(assay_context *context, int precision, bool hemi
         }
         const double mean = few(&f, few_sum(&f, SAMPLES, terms) / SAMPLES);
         bound_use_add(&use, mean, out->values[i], out->bounds[i]);
-        if (l == order - 1) {
+        if (l == order - 1 && index == l * l + l) {
             bound_use_add(last, mean, out->values[i], out->bounds[i]);
         }
     }
