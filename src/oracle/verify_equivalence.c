@@ -52,13 +52,15 @@ static equivalence look(const assay_judgement *j, const assay_verify_channel *c,
 }
 
 /* The rejected region with the least p of this channel and level. */
-static bool find_beyond(const assay_judgement *j, int channel, int level, size_t *region_out)
+static bool find_beyond(const assay_judgement *j, int channel, int level, size_t *region_out,
+                        double *log_p_out)
 {
     const assay_test_class *class_of = level == ASSAY_TILE_LEVELS ? &j->whole : &j->tiles;
     for (uint64_t i = 0; i < class_of->decision.rejected; i++) {
         const uint64_t item = class_of->tests.kept[i].item;
         if (assay_test_channel(item) == channel && assay_test_level(item) == level) {
             *region_out = (size_t)(item - assay_test_item(channel, level, 0));
+            *log_p_out  = class_of->tests.kept[i].log_p;
             return true;
         }
     }
@@ -101,7 +103,8 @@ assay_status assay_judge_add_equivalence(const assay_judgement *j, int channel, 
     f.array         = c->name;
     f.test          = test;
     f.values        = e.count;
-    if (find_beyond(j, channel, level, &at)) {
+    if (find_beyond(j, channel, level, &at, &f.log_p)) {
+        f.p       = assay_exp(f.log_p);
         f.kind    = ASSAY_VERDICT_FAIL;
         f.meaning = "A difference beyond the allowance is shown: more than the method's bias was "
                     "said to be.";
@@ -111,7 +114,9 @@ assay_status assay_judge_add_equivalence(const assay_judgement *j, int channel, 
                     "allowance so near to the difference.";
     }
     fill(j, c, level, at, &f);
-    f.log_p = e.worst_log_p;
-    f.p     = assay_exp(f.log_p);
+    if (f.kind != ASSAY_VERDICT_FAIL) {
+        f.log_p = e.worst_log_p;
+        f.p     = assay_exp(f.log_p);
+    }
     return assay_verdict_add(verdict, &f);
 }
