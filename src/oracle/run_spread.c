@@ -87,11 +87,11 @@ static void conclude(const tile_spread *spread, int count, const assay_tile_sums
     for (int l = sums->level_count; l <= ASSAY_TILE_LEVELS; l++) {
         result->design[l] = design;
     }
-    /* With few runs the sum of the whole has a spread that is hardly known: it is asked only where
-     * it is far beyond what the tiles let expect. */
+    /* Noise that hangs together over tiles may do so over the image, and of that there are but
+     * `count` independent sums. */
     const double whole = spread->squares[at] * scale;
-    if (whole > 6.0 * design * pixels || (design > 1.5 && whole > design * pixels)) {
-        result->whole_variance = whole;
+    if (design > 1.5 || whole > 6.0 * pixels) {
+        result->whole_variance = fmax(whole, design * pixels);
         result->whole_degrees  = count - 1;
     }
 }
