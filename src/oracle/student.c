@@ -17,8 +17,9 @@ enum { MOST_TERMS = 5000 };
 static double log_gamma_half_step(double a)
 {
     double below = 1.0;
-    for (; a < 16.0; a += 1.0) {
+    while (a < 16.0) {
         below *= a / (a + 0.5);
+        a += 1.0;
     }
     const double r = 1.0 / a, z = r * r;
     double       sum = -5461.0 / 425984.0;
