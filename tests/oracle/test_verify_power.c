@@ -23,6 +23,7 @@ enum { SIDE = 32, TILE = 4 };
 typedef struct {
     const noise_pool *pool, *reference; /* NULL: the same    */
     int               samples, reference_samples, runs;
+    bool              alone; /* the candidate has no variance                */
     bool              exact; /* the reference has the pool's very means */
     noise_defect      defect;
     uint64_t          first;
@@ -43,6 +44,9 @@ static assay_status compare(void *user, uint64_t index, int worker)
         const uint64_t number = e->first + index * 8 + (uint64_t)k;
         if (k < e->runs) {
             images[k] = noise_pool_draw(context, e->pool, e->samples, number, e->defect);
+            if (e->alone) {
+                noise_pool_drop_variance(images[k]);
+            }
         } else if (e->exact) {
             images[k] = noise_pool_exact(context, e->pool, e->reference_samples);
         } else {
@@ -104,6 +108,12 @@ static void noise_that_lies_elsewhere(void **state)
         .pool = mine, .reference = theirs, .samples = 4, .reference_samples = 64, .runs = 1});
     hold_level((experiment){
         .pool = mine, .reference = theirs, .samples = 32, .reference_samples = 8, .runs = 1});
+    hold_level((experiment){.pool              = mine,
+                            .reference         = theirs,
+                            .samples           = 4,
+                            .reference_samples = 64,
+                            .runs              = 1,
+                            .alone             = true});
     noise_pool_free(mine);
     noise_pool_free(theirs);
     (void)state;

@@ -293,3 +293,20 @@ assay_image *noise_pool_exact(assay_context *context, const noise_pool *pool, in
     }
     return image;
 }
+
+void noise_pool_drop_variance(assay_image *image)
+{
+    static const char *const NAMES[] = {"Variance.R", "Variance.G", "Variance.B", "SampleCount"};
+    const int                pixels  = assay_image_width(image) * assay_image_height(image);
+    assay_channel            channel;
+    for (int c = 0; c < 4; c++) {
+        require(assay_image_find_channel(image, NAMES[c], &channel), NAMES[c]);
+        for (int i = 0; i < pixels; i++) {
+            if (c < 3) {
+                channel.data.f32[i] = 0.0F;
+            } else {
+                channel.data.u32[i] = 1;
+            }
+        }
+    }
+}

@@ -56,6 +56,9 @@ void noise_pool_free(noise_pool *pool);
 assay_image *noise_pool_draw(assay_context *context, const noise_pool *pool, int samples,
                              uint64_t number, noise_defect defect);
 
+/* Takes an image's variance away: 0, of a single sample. */
+void noise_pool_drop_variance(assay_image *image);
+
 /* The pool's very means, with the variances of `samples` samples. */
 assay_image *noise_pool_exact(assay_context *context, const noise_pool *pool, int samples);
 

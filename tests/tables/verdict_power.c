@@ -41,21 +41,6 @@ static void require(bool ok, const char *what)
     }
 }
 
-static void drop_variance(assay_image *image)
-{
-    static const char *const NAMES[] = {"Variance.R", "Variance.G", "Variance.B"};
-    for (int c = 0; c < 3; c++) {
-        assay_channel channel;
-        require(assay_image_find_channel(image, NAMES[c], &channel), "a variance");
-        memset(channel.data.f32, 0, sizeof(float) * SIDE * SIDE);
-    }
-    assay_channel count;
-    require(assay_image_find_channel(image, "SampleCount", &count), "a count");
-    for (int i = 0; i < SIDE * SIDE; i++) {
-        count.data.u32[i] = 1;
-    }
-}
-
 static assay_status compare(void *user, uint64_t index, int worker)
 {
     experiment                 *e       = user;
@@ -70,7 +55,7 @@ static assay_status compare(void *user, uint64_t index, int worker)
         candidates[k] =
             noise_pool_draw(context, e->candidate, e->samples, number + (uint64_t)k, e->defect);
         if (e->how == ALONE || e->how == ALLOWED) {
-            drop_variance(candidates[k]);
+            noise_pool_drop_variance(candidates[k]);
         }
     }
     reference =
