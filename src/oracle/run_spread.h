@@ -15,8 +15,8 @@ typedef struct {
     /* Variance of sums over tiles of each level, and over the whole, over what independent pixels
      * would have (Kish's design effect [kish65]); at least 1. */
     double design[ASSAY_TILE_LEVELS + 1];
-    /* Of the sum over the whole image: from the runs' sums alone, with count - 1 degrees of
-     * freedom.  0 where the tiles tell no less: their noise does not reach across the image. */
+    /* Of the sum over the whole image, where pixels are not independent: at least that of the runs'
+     * own sums, with count - 1 degrees of freedom.  0 where they are. */
     double whole_variance, whole_degrees;
 } assay_run_spread;
 

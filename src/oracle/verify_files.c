@@ -13,8 +13,11 @@
 /* "a.exr" or "a.exr and 3 more". */
 static void candidate_name(const char *const *candidates, int count, char name_out[4200])
 {
-    snprintf(name_out, 4200, count > 1 ? "%.4095s and %d more" : "%.4095s", candidates[0],
-             count - 1);
+    const int length = snprintf(name_out, 4096, "%s", candidates[0]);
+    const int end    = length < 4095 ? length : 4095;
+    if (count > 1) {
+        snprintf(name_out + end, 4200 - (size_t)end, " and %d more", count - 1);
+    }
 }
 
 static assay_status read_all(assay_context *context, const char *const *candidates, int count,

@@ -87,23 +87,30 @@ static double worst_visible(const assay_verdict *verdict, int first, const char 
 
 static assay_status describe_power(assay_verdict *verdict, int first, int tile)
 {
-    char         text[400], tiles[16];
+    char         tiles[16];
     const double whole = worst_visible(verdict, first, "whole");
     if (isnan(whole)) {
         return ASSAY_OK;
     }
     snprintf(tiles, sizeof tiles, "tile-%d", tile);
-    const double in_tile = worst_visible(verdict, first, tiles);
-    const double pixel   = worst_visible(verdict, first, "welch");
-    int          length  = snprintf(text, sizeof text,
-                                    "With a probability of 0.9 it would have seen a bias of %.3g percent of "
-                                              "the mean everywhere, of %.3g percent of it in a typical tile of %d x %d",
-                                    100.0 * whole, 100.0 * in_tile, tile, tile);
-    snprintf(text + length, sizeof text - (size_t)length,
-             isnan(pixel) ? ", and none in a single pixel."
-                          : ", of %.3g percent in a typical pixel.",
-             100.0 * pixel);
-    return assay_verdict_set(verdict, "power", text);
+    const double       in_tile = worst_visible(verdict, first, tiles);
+    const double       pixel   = worst_visible(verdict, first, "welch");
+    assay_text_builder text    = assay_text_start(verdict->context);
+    assay_text_add(
+        &text,
+        "Where noise is largest it would have seen, with a probability of 0.9, a bias of "
+        "%.3g percent of the mean everywhere, or of %.3g percent of it in a typical tile "
+        "of %d x %d",
+        100.0 * whole, 100.0 * in_tile, tile, tile);
+    if (pixel < 1000.0) {
+        assay_text_add(&text, ", or of %.3g percent in a typical pixel", 100.0 * pixel);
+    }
+    assay_text_add_char(&text, '.');
+    char        *sentence = NULL;
+    assay_status status   = assay_text_finish(&text, "a verdict's power", &sentence);
+    status = status != ASSAY_OK ? status : assay_verdict_set(verdict, "power", sentence);
+    assay_text_destroy(verdict->context, sentence);
+    return status;
 }
 
 static const char *source_text(const assay_verify_channel *channels, int count)

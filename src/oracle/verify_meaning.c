@@ -21,22 +21,17 @@ static double relative_difference(const assay_verify_channel *c)
                                           : 0.0;
 }
 
-/* Whether the channels of one stage differ from the reference by factors that are not the same. */
+/* Whether one channel of a stage has too much, another too little: no light that is missing or
+ * counted twice does that. */
 static bool colours_differ(const assay_judgement *j, int channel)
 {
     const assay_verify_channel *c    = &j->channels[channel];
     const double                mine = relative_difference(c);
     for (int i = 0; i < j->count; i++) {
         const assay_verify_channel *other = &j->channels[i];
-        if (i != channel && !other->problem && other->stage == c->stage &&
-            (whole_rejected(j, i) || whole_rejected(j, channel))) {
-            const double      theirs = relative_difference(other);
-            const assay_noise noise =
-                assay_verify_channel_noise(other, ASSAY_TILE_LEVELS, &other->sums.whole);
-            const double error = sqrt(noise.variance) / fabs(other->sums.whole.reference);
-            if (fabs(mine - theirs) > 0.1 * fmax(fabs(mine), fabs(theirs)) + 6.0 * error) {
-                return true;
-            }
+        if (i != channel && !other->problem && other->stage == c->stage && whole_rejected(j, i) &&
+            relative_difference(other) * mine < 0.0) {
+            return true;
         }
     }
     return false;
@@ -66,7 +61,7 @@ static double factor_spread(const assay_verify_channel *c)
         const assay_noisy_sums *s     = &tiles->sums[i];
         const assay_noise       noise = assay_verify_channel_noise(c, 0, s);
         const double            off   = s->candidate - ratio * s->reference;
-        excess += off * off - noise.variance;
+        excess += off * off - assay_noise_variance(&noise);
         total += s->difference * s->difference;
     }
     return total > 0.0 && excess > 0.0 ? sqrt(excess / total) : 0.0;
@@ -77,8 +72,8 @@ const char *assay_meaning_of_whole(const assay_judgement *judgement, int channel
     const assay_verify_channel *c    = &judgement->channels[channel];
     const bool                  dark = c->sums.whole.difference < 0.0;
     if (colours_differ(judgement, channel)) {
-        return "The channels are off by different factors: this could be another colour space, "
-               "swapped channels, or a colour of a light or material that is wrong.";
+        return "One channel is too bright, another too dark: this could be another colour space, "
+               "swapped channels, or the wrong colour of a light or material.";
     }
     if (dark && share_of_bright(c) > 0.7) {
         return "The bright parts are too dark: this could be clamped highlights or samples, or a "

@@ -316,7 +316,7 @@ static void test_in_front(void **state)
     }
     for (size_t i = 0; i < POINTS; i++) {
         const double     near = -2e-4 * (1.0 + 1e-9 * ((double)i - 98.0));
-        const double     high = i % 3 == 0 ? 0.0 : i % 3 == 1 ? -0.01 : near;
+        const double     high = i % 6 == 0 ? 0.0 : i % 6 == 1 ? -0.01 : near;
         const assay_vec3 p    = vec3(0.008 * (double)(i % 14), 0.008 * (double)(i / 14), high);
         const assay_vec3 n    = vec3(0.0, 0.0, 1.0);
         put(d->at + 3 * i, &p, 3);
