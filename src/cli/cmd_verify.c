@@ -264,6 +264,9 @@ static assay_status report(cli_console *console, assay_context *context, const v
     if (text) {
         status = write_output(console, context, verdict, assay_verdict_paragraph, "-");
     }
+    if (status == ASSAY_OK && text && assay_verdict_get(verdict, "not judged")) {
+        printf("Not judged: %s.\n", assay_verdict_get(verdict, "not judged"));
+    }
     if (status == ASSAY_OK && r->annotations) {
         status = write_output(console, context, verdict, assay_verdict_annotations, "-");
     }
