@@ -141,6 +141,21 @@ void stage_records_close(stage_records *records)
     }
 }
 
+assay_status stage_records_store(const stage_records *records, assay_record_store **store_out)
+{
+    assay_vec3 low = vec3(INFINITY, INFINITY, INFINITY), high = vec3_negate(low);
+    for (size_t i = 0; i < records->count; i++) {
+        low  = vec3_min(low, records->records[i].position);
+        high = vec3_max(high, records->records[i].position);
+    }
+    assay_status status = assay_record_store_create(records->context, &records->rules, low, high,
+                                                    ASSAY_INDEX_OCTREE, store_out);
+    for (size_t i = 0; i < records->count && status == ASSAY_OK; i++) {
+        status = assay_record_store_add(*store_out, &records->records[i]);
+    }
+    return status;
+}
+
 /* ---- what may contribute ---- */
 
 static void enclose(assay_vec3 *low, assay_vec3 *high, assay_vec3 p)

@@ -37,6 +37,9 @@ static const char *const UNITS[]  = {
      "",  "", "W/(m2 sr)", "W/(m2 sr)", "W/(m2 sr)",  "W/(m2 sr)", "W/(m2 sr)"};
 enum { ARRAY_COUNT = sizeof ARRAYS / sizeof ARRAYS[0], MOST = 9 * PIXELS };
 static const size_t COLUMNS[ARRAY_COUNT] = {3, 3, 1, 3, 9, 9, 3, 9, 3, 1, 3, 3, 3, 3, 3};
+/* A pixel at record 5: its weight is 1e12, or what a float makes of that. */
+enum { STANDS = 33 };
+
 enum { WEIGHT = 9, SUM, RESULT, DIRECT, INDIRECT, TOTAL };
 
 typedef struct {
@@ -56,6 +59,8 @@ static void round_all(data *d)
     }
 }
 
+static assay_vec3 vec3_at(const double *v) { return vec3(v[0], v[1], v[2]); }
+
 static void make_inputs(data *d)
 {
     const assay_camera camera = splat_room_camera(false);
@@ -72,6 +77,10 @@ static void make_inputs(data *d)
         assay_vec3 p = vec3(NAN, NAN, NAN), n = vec3(0.0, 0.0, 1.0);
         splat_room_point(&camera, SIDE, SIDE, i, &p, &n);
         p = i == 7 ? vec3(NAN, NAN, NAN) : p;
+        if (i == STANDS) {
+            p = vec3_at(&d->values[0][15]);
+            n = vec3_at(&d->values[1][15]);
+        }
         memcpy(&d->values[6][3 * i], &p, sizeof p);
         memcpy(&d->values[7][9 * i + 6], &n, sizeof n);
         for (size_t c = 0; c < 3; c++) {
@@ -147,14 +156,15 @@ static void test_right(void **state)
     data          *d       = make_data(*state);
     assay_verdict *verdict = verify(*state, d, d, ASSAY_PRECISION_FLOAT);
     assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_PASS);
-    assert_int_equal(assay_verdict_count(verdict), 4);
+    assert_int_equal(assay_verdict_count(verdict), 5);
     assert_string_equal(assay_verdict_at(verdict, 0).stage, "splat");
-    assert_string_equal(assay_verdict_at(verdict, 2).stage, "normalise");
-    assert_string_equal(assay_verdict_at(verdict, 3).stage, "combine");
+    assert_string_equal(assay_verdict_at(verdict, 2).stage, "splat-light");
+    assert_string_equal(assay_verdict_at(verdict, 3).stage, "normalise");
+    assert_string_equal(assay_verdict_at(verdict, 4).stage, "combine");
     assert_string_equal(assay_verdict_get(verdict, "precision"), "float");
     assert_non_null(strstr(assay_verdict_get(verdict, "not judged"), "records/position"));
     assert_null(strstr(assay_verdict_get(verdict, "not judged"), "splat/result"));
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 5; i++) {
         const assay_finding f = assay_verdict_at(verdict, i);
         assert_true(f.in_bounds >= 0.0 && f.in_bounds <= 1.0 && f.bound > 0.0);
         assert_int_equal(f.values, PIXELS * (i == 0 ? 1 : 3));
@@ -180,6 +190,8 @@ static const planted DEFECTS[] = {
     {"a weight", WEIGHT, 1.0001, 0.0, 40, 41, "splat", "made in it"},
     {"all weights", WEIGHT, 0.99, 0.0, 0, 0, "splat", "0.99 times"},
     {"the sums", SUM, 3.14159265358979, 0.0, 0, 0, "splat", "3.14159 times"},
+    {"radiance where a record stands", SUM, 1.05, 0.0, STANDS, STANDS + 1, "splat-light",
+     "made in it"},
     {"the results", RESULT, -1.0, 0.0, 0, 0, "normalise", "wrong sign"},
     {"one result", RESULT, 1.0, 1e-4, 100, 101, "normalise", "made in it"},
     {"the image", TOTAL, 1.0, 0.001, 0, 128, "combine", "made in it"},
