@@ -44,8 +44,7 @@ enum {
     OPT_QUIET,
     OPT_HELP,
     OPT_SCENE,
-    OPT_TIME,
-    OPT_SCENE_OPTIONS
+    OPT_TIME
 };
 static const cli_option OPTIONS[] = {
     {"reference", 0, "REF.exr", "what is right: an image with variances; required"},
@@ -158,7 +157,7 @@ static const char *take_output(verify_request *r, int index, const char *value)
     case OPT_TIME: return cli_read_real(value, &r->bundles.time);
     default: break;
     }
-    if (index >= OPT_SCENE_OPTIONS) {
+    if (index >= 0) {
         const char *problem = NULL;
         cli_scene_option(&r->bundles.options, OPTIONS[index].name, value, &problem);
         return problem;

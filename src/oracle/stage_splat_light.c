@@ -151,7 +151,8 @@ static assay_status light_pixels(void *user, uint64_t chunk, int worker)
 {
     const light_job *job    = user;
     assay_status     status = ASSAY_OK;
-    for (size_t i = chunk * CHUNK; i < (chunk + 1) * CHUNK && i < job->out->rows && !status; i++) {
+    for (size_t i = chunk * CHUNK;
+         i < (chunk + 1) * CHUNK && i < job->run->in[SPLAT_POSITION].rows && !status; i++) {
         status = light_pixel(job, worker, i);
     }
     return status;
@@ -216,6 +217,7 @@ static void close_job(light_job *job)
 
 static assay_status run_splat_light(stage_run *run)
 {
+    const size_t  pixels  = run->in[SPLAT_POSITION].rows;
     stage_records records = {0};
     light_job     job     = {.run = run, .records = &records};
     if (assay_params_choice(run->params, "variant") == 1) {
@@ -225,7 +227,7 @@ static assay_status run_splat_light(stage_run *run)
     status              = status ? status : check(&job);
     status              = status ? status : open_job(&job);
     status              = status ? status
-                                 : assay_parallel_for(run->context, NULL, (job.out->rows + CHUNK - 1) / CHUNK,
+                                 : assay_parallel_for(run->context, NULL, (pixels + CHUNK - 1) / CHUNK,
                                                       light_pixels, &job);
     close_job(&job);
     stage_records_close(&records);
