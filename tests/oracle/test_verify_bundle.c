@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "support/failing_context.h"
 #include "support/measure.h"
 #include "support/random_places.h"
 #include "support/splat_room.h"
@@ -423,6 +424,37 @@ static void test_lying_manifest(void **state)
     free(d);
 }
 
+typedef struct {
+    const char *candidate, *reference;
+} paths;
+
+static assay_status verify_once(assay_context *context, void *user)
+{
+    const paths   *p       = user;
+    assay_verdict *verdict = NULL;
+    assay_status   status  = assay_verdict_create(context, "candidate", "reference", &verdict);
+    status                 = status ? status
+                                    : assay_verify_bundle(context, p->candidate, p->reference, NULL,
+                                                          ASSAY_PRECISION_FLOAT, verdict);
+    assay_verdict_destroy(verdict);
+    return status;
+}
+
+static void test_refused_memory(void **state)
+{
+    data       *d = make_data(*state);
+    stage_case  c = stage_case_begin(*state), r = stage_case_begin(*state);
+    const paths p = {c.path, r.path};
+    add_arrays(&c, d, -1);
+    add_arrays(&r, d, -1);
+    stage_case_finish(&c);
+    stage_case_finish(&r);
+    assert_true(failing_each(verify_once, (void *)&p) > 200);
+    stage_case_end(&c);
+    stage_case_end(&r);
+    free(d);
+}
+
 /* Nothing that a stage could judge is no pass. */
 static void test_nothing(void **state)
 {
@@ -454,6 +486,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_other_arrays, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_broken_files, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_lying_manifest, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_refused_memory, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_nothing, context_set_up, context_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
