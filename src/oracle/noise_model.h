@@ -11,10 +11,12 @@
 #include "oracle/noise.h"
 #include "oracle/tile_sums.h"
 
-/* Of a tile of the smallest size. */
+/* Near a tile of the smallest size. */
 typedef struct {
     double up, down;             /* candidate's variance over the reference's, and the other way */
-    double candidate, reference; /* variances of a pixel, as usual near here                     */
+    double candidate, reference; /* variances of a pixel                                         */
+    double candidate_event, reference_event; /* variance over mean: a sample's usual light over
+                                                the samples of a pixel                           */
 } assay_local_noise;
 
 typedef struct {
