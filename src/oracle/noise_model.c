@@ -108,6 +108,13 @@ static assay_local_noise look_around(const assay_tile_level *tiles, int x, int y
                                mean_of(lists[REFERENCE_EVENT], count)};
 }
 
+/* Rare samples carry about the same light wherever they are found: variance goes with light. */
+static void fill_in_light(assay_noisy_sums *s, double candidate_event, double reference_event)
+{
+    s->by_reference_light = s->reference_variance + candidate_event * fmax(0.0, s->reference);
+    s->by_candidate_light = s->candidate_variance + reference_event * fmax(0.0, s->candidate);
+}
+
 static void fill_in(assay_noisy_sums *s, const assay_local_noise *local)
 {
     const double up = 1.0 + local->up, down = 1.0 + local->down;
@@ -115,10 +122,7 @@ static void fill_in(assay_noisy_sums *s, const assay_local_noise *local)
     s->by_reference_spread = up * up * s->reference_spread;
     s->by_candidate        = down * s->candidate_variance;
     s->by_candidate_spread = down * down * s->candidate_spread;
-    s->by_reference_light =
-        s->reference_variance + local->candidate_event * fmax(0.0, s->reference);
-    s->by_candidate_light =
-        s->candidate_variance + local->reference_event * fmax(0.0, s->candidate);
+    fill_in_light(s, local->candidate_event, local->reference_event);
 }
 
 static void fit(assay_tile_level *tiles, assay_noise_model_kind kind, double *scratch,
@@ -161,6 +165,21 @@ assay_status assay_noise_model_fit(assay_context *context, assay_tile_level *til
     }
     assay_release(context, scratch);
     return ok ? ASSAY_OK : assay_fail_memory(context, "the noise of tiles");
+}
+
+void assay_noise_model_light(assay_tile_sums *sums)
+{
+    for (int l = 1; l < sums->level_count; l++) {
+        const assay_tile_level *level = &sums->levels[l];
+        for (size_t i = 0; i < level->count; i++) {
+            const assay_local_noise local = look_around(level, (int)(i % (size_t)level->columns),
+                                                        (int)(i / (size_t)level->columns));
+            fill_in_light(&level->sums[i], local.candidate_event, local.reference_event);
+        }
+    }
+    assay_noisy_sums *whole = &sums->whole;
+    fill_in_light(whole, ratio(whole->candidate_variance, whole->candidate),
+                  ratio(whole->reference_variance, whole->reference));
 }
 
 void assay_noise_model_release(assay_noise_model *model)
