@@ -97,7 +97,7 @@ noise_pool *noise_pool_made_up(noise_kind kind, int side)
     noise_pool *pool = pool_of(side);
     for (size_t i = 0; i < (size_t)side * (size_t)side; i++) {
         assay_random random = assay_random_start(99, ASSAY_STAGE_TEST, i, (uint64_t)kind);
-        const double x = (double)(i % (size_t)side), y = (double)(i / (size_t)side);
+        const int    x = (int)(i % (size_t)side), y = (int)(i / (size_t)side);
         const double light  = 1.0 / (1.0 + 0.05 * (x + 2.0 * y));
         const double spread = i % 5 == (kind == NOISE_ELSEWHERE ? 2 : 0) ? 0.8 : 0.2;
         for (size_t s = 0; s < NOISE_POOL_SAMPLES; s++) {
@@ -173,10 +173,11 @@ static double mean_of_pool(const noise_pool *pool)
 {
     double       sum   = 0.0;
     const size_t count = (size_t)pool->side * (size_t)pool->side * NOISE_POOL_SAMPLES * 3;
+    const size_t taken = count / 64;
     for (size_t i = 0; i < count; i += 64) {
         sum += pool->values[i];
     }
-    return sum / (double)(count / 64);
+    return sum / (double)taken;
 }
 
 static void spoil(const drawing *d, size_t pixel, double v[3])
