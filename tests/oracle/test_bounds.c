@@ -124,6 +124,26 @@ static void test_reach(void **state)
     assert_true(maybe > 100);
 }
 
+/* A record whose height above the point's plane is all but the margin may be in front or not. */
+static void test_margin(void **state)
+{
+    static const struct {
+        double           height;
+        bound_membership member;
+    } cases[]                       = {{-1e-3 * (1.0 - 1e-8), BOUND_MAYBE},
+                                       {-1e-3 * (1.0 + 1e-8), BOUND_MAYBE},
+                                       {-1e-3 * (1.0 - 1e-5), BOUND_IN},
+                                       {-1e-3 * (1.0 + 1e-5), BOUND_OUT}};
+    const assay_record       record = {.normal = {0.0, 0.0, 1.0}, .radius = 1.0};
+    const assay_record_rules rules  = {.a = 0.5, .in_front = true};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const weight_bound w = record_weight_bound(
+            &FLOAT, true, &record, &rules, vec3(0.1, 0.0, cases[i].height), vec3(0.0, 0.0, 1.0));
+        assert_int_equal(w.member, cases[i].member);
+    }
+}
+
 /* Near a pole, near the horizon, or where cos m phi is all but 0: what the rounding turns there is
  * large beside the function. */
 static assay_vec3 delicate_direction(assay_random *random, int trial)
@@ -182,6 +202,7 @@ int main(void)
         cmocka_unit_test(test_means),
         cmocka_unit_test(test_worst_mean),
         cmocka_unit_test(test_reach),
+        cmocka_unit_test(test_margin),
         cmocka_unit_test_setup_teardown(test_flat_hemisphere, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_rounded_directions, context_set_up, context_tear_down),
     };

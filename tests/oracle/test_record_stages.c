@@ -315,8 +315,8 @@ static void test_in_front(void **state)
         d->radius[k] = 0.2 + 0.01 * (double)(k % 10);
     }
     for (size_t i = 0; i < POINTS; i++) {
-        const double near =
-            -1e-3 * (0.2 + 0.01 * (double)(i % 10)) * (1.0 + 1e-9 * ((double)i - 98.0));
+        const double near = -1e-3 * (0.2 + 0.01 * (double)(i % 10)) *
+                            (1.0 + (i % 2 ? 1e-5 : 1e-9) * ((double)i - 98.0));
         const double     high = i % 6 == 0 ? 0.0 : i % 6 == 1 ? -0.01 : near;
         const assay_vec3 p    = vec3(0.008 * (double)(i % 14), 0.008 * (double)(i / 14), high);
         const assay_vec3 n    = vec3(0.0, 0.0, 1.0);
