@@ -329,13 +329,14 @@ static void words(void **state)
 
 typedef assay_status (*output)(const assay_verdict *verdict, char **text_out);
 
+static const output OUTPUTS[] = {assay_verdict_paragraph, assay_verdict_json, assay_verdict_junit,
+                                 assay_verdict_annotations};
+
 static assay_status everything(assay_context *context, void *user)
 {
-    const output   outputs[] = {assay_verdict_paragraph, assay_verdict_json, assay_verdict_junit,
-                                assay_verdict_annotations};
-    assay_verdict *verdict   = NULL;
-    char          *text      = NULL;
-    assay_status   status    = assay_verdict_create(context, "c", "r", &verdict);
+    assay_verdict *verdict = NULL;
+    char          *text    = NULL;
+    assay_status   status  = assay_verdict_create(context, "c", "r", &verdict);
     for (int i = 0; status == ASSAY_OK && i < 20; i++) {
         assay_finding f = finding("image", "R", i ? ASSAY_VERDICT_FAIL : ASSAY_VERDICT_PASS);
         f.channel       = "X";
@@ -346,7 +347,7 @@ static assay_status everything(assay_context *context, void *user)
         status = assay_verdict_set(verdict, "a", "b");
     }
     for (int i = 0; status == ASSAY_OK && i < 4; i++) {
-        status = outputs[i](verdict, &text);
+        status = OUTPUTS[i](verdict, &text);
         if (status == ASSAY_OK) {
             assay_text_destroy(context, text);
         }

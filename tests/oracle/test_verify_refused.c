@@ -1,0 +1,239 @@
+/* test_verify_refused.c - each thing that forbids a verdict on images: named, and never a pass. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "assay/verify.h"
+#include "support/failing_context.h"
+#include "support/normal_images.h"
+
+enum { SIDE = NORMAL_IMAGES_SIDE };
+
+static failing_memory memory;
+
+static int set_up(void **state)
+{
+    *state = failing_context(&memory);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    assert_int_equal(memory.live, 1);
+    assay_context_destroy(*state);
+    return 0;
+}
+
+static void expect_problem(assay_context *context, const assay_image *c, const assay_image *r,
+                           const char *channels, const char *test, const char *words)
+{
+    assay_verify_options o = assay_verify_options_default();
+    o.channels             = channels;
+    assay_verdict      *v  = normal_images_verify(context, c, r, &o);
+    const assay_finding f  = normal_images_find(v, test);
+    assert_int_equal(assay_verdict_whole(v), ASSAY_VERDICT_CANNOT_TELL);
+    assert_int_equal(f.kind, ASSAY_VERDICT_CANNOT_TELL);
+    assert_non_null(strstr(f.meaning, words));
+    assay_verdict_destroy(v);
+}
+
+static void bad_values(void **state)
+{
+    static const float BAD[] = {NAN, INFINITY, -INFINITY};
+    for (int k = 0; k < 3; k++) {
+        assay_image *c                  = normal_images_make(*state, 9, 0.5, 64),
+                    *r                  = normal_images_make(*state, 10, 0.5, 256);
+        normal_images_values(c, "R")[5] = BAD[k];
+        expect_problem(*state, c, r, NULL, "finite", "candidate");
+        normal_images_values(c, "R")[5] = 1.0F;
+        normal_images_values(r, "R")[6] = BAD[k];
+        expect_problem(*state, c, r, NULL, "finite", "reference");
+        normal_images_values(r, "R")[6]          = 1.0F;
+        normal_images_values(c, "Variance.R")[7] = k == 0 ? -1.0F : BAD[k];
+        expect_problem(*state, c, r, NULL, "variance", "candidate");
+        normal_images_values(c, "Variance.R")[7] = 1.0F;
+        normal_images_values(r, "Variance.R")[8] = BAD[k];
+        expect_problem(*state, c, r, NULL, "variance", "reference");
+        assay_image_destroy(c);
+        assay_image_destroy(r);
+    }
+}
+
+static void missing_channels(void **state)
+{
+    assay_image *c = normal_images_make(*state, 9, 0.5, 64),
+                *r = normal_images_make(*state, 10, 0.5, 256);
+    expect_problem(*state, c, r, "R,G", "channel", "candidate does not have");
+    normal_images_add(c, "G");
+    expect_problem(*state, c, r, "R,G", "channel", "reference does not have");
+    assay_image_destroy(c);
+    assay_image_destroy(r);
+}
+
+/* A reference of one sample a pixel, or without variance: not known, whatever its file holds. */
+static void reference_without_variance(void **state)
+{
+    assay_image *c = normal_images_make(*state, 9, 0.5, 64),
+                *r = normal_images_make(*state, 10, 0.5, 256);
+    assay_channel count;
+    assert_true(assay_image_find_channel(r, "SampleCount", &count));
+    count.data.u32[100] = 1;
+    expect_problem(*state, c, r, NULL, "variance", "two samples");
+    assay_verify_options o = assay_verify_options_default();
+    o.reference_exact      = true;
+    assay_image *better    = normal_images_make(*state, 9, 0.5, 65536);
+    assert_int_equal(normal_images_kind(*state, c, better, &o), ASSAY_VERDICT_PASS);
+    /* ... and is said to have none: what is better is taken for wrong. */
+    assert_int_equal(normal_images_kind(*state, better, r, &o), ASSAY_VERDICT_FAIL);
+    assay_image_destroy(better);
+    assay_image_destroy(c);
+    assay_image_destroy(r);
+}
+
+static void refused(void **state)
+{
+    const assay_image   *c = normal_images_make(*state, 9, 0.5, 64);
+    assay_image         *r = normal_images_make(*state, 10, 0.5, 256), *small = NULL;
+    assay_verify_options o = assay_verify_options_default();
+    assay_verdict       *v = NULL;
+    assert_int_equal(assay_verdict_create(*state, "c", "r", &v), ASSAY_OK);
+    assert_int_equal(assay_image_create(*state, SIDE, SIDE - 1, &small), ASSAY_OK);
+    assert_int_equal(assay_verify_images(&c, 1, small, &o, v), ASSAY_ERR_ARGUMENT);
+    assert_non_null(strstr(assay_context_error(*state), "64 x 64"));
+    assay_image_destroy(small);
+    assert_int_equal(assay_image_create(*state, SIDE, SIDE, &small), ASSAY_OK);
+    assert_int_equal(assay_verify_images(&c, 1, small, &o, v), ASSAY_ERR_ARGUMENT);
+    assert_non_null(strstr(assay_context_error(*state), "no channel"));
+    const struct {
+        double level, allow, detect;
+        int    tile, count;
+    } BAD[] = {{0.0, NAN, NAN, 16, 1},  {0.5, NAN, NAN, 16, 1},  {NAN, NAN, NAN, 16, 1},
+               {0.01, 0.0, NAN, 16, 1}, {0.01, NAN, -1, 16, 1},  {0.01, NAN, NAN, 3, 1},
+               {0.01, NAN, NAN, 16, 0}, {0.01, NAN, NAN, 16, 65}};
+    for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
+        o        = assay_verify_options_default();
+        o.level  = BAD[i].level;
+        o.allow  = BAD[i].allow;
+        o.detect = BAD[i].detect;
+        o.tile   = BAD[i].tile;
+        assert_int_equal(assay_verify_images(&c, BAD[i].count, r, &o, v), ASSAY_ERR_ARGUMENT);
+    }
+    o                                = assay_verify_options_default();
+    static const char *const LISTS[] = {"", "R,", ",R", "R,R"};
+    for (int i = 0; i < 4; i++) {
+        o.channels = LISTS[i];
+        assert_int_equal(assay_verify_images(&c, 1, r, &o, v), ASSAY_ERR_ARGUMENT);
+    }
+    assert_int_equal(assay_verdict_count(v), 0);
+    assay_verdict_destroy(v);
+    assay_image_destroy((assay_image *)c);
+    assay_image_destroy(small);
+    assay_image_destroy(r);
+}
+
+static void metadata(void **state)
+{
+    static const char *const   PAIRS[][3] = {{"assay:scene.digest", "a", "b"},
+                                             {"assay:camera.position", "0 0 1", "0 0 2"},
+                                             {"assay:scene.time", "0", "1"},
+                                             {"assay:scene.background", "0 0 0", "1 1 1"},
+                                             {"assay:scene.force_diffuse", "on", "off"}};
+    const assay_verify_options o          = assay_verify_options_default();
+    for (size_t i = 0; i < sizeof PAIRS / sizeof PAIRS[0]; i++) {
+        assay_image *r       = normal_images_make(*state, 10, 0.5, 256),
+                    *made    = normal_images_make(*state, 9, 0.5, 64);
+        const assay_image *c = made;
+        assay_verdict     *v = NULL;
+        assert_int_equal(assay_verdict_create(*state, "c", "r", &v), ASSAY_OK);
+        assay_image_set_attribute(made, PAIRS[i][0], PAIRS[i][1]);
+        assert_int_equal(assay_verify_images(&c, 1, r, &o, v), ASSAY_OK);
+        assay_image_set_attribute(r, PAIRS[i][0], PAIRS[i][2]);
+        assert_int_equal(assay_verify_images(&c, 1, r, &o, v), ASSAY_ERR_ARGUMENT);
+        assert_non_null(strstr(assay_context_error(*state), PAIRS[i][0]));
+        assay_verify_options ignore = o;
+        ignore.ignore_metadata      = true;
+        assert_int_equal(assay_verify_images(&c, 1, r, &ignore, v), ASSAY_OK);
+        assay_verdict_destroy(v);
+        assay_image_destroy(made);
+        assay_image_destroy(r);
+    }
+}
+
+/* Bounces stand under each method's own name; a picture of records is no light; colours that are
+ * said to be encoded are no light either. */
+static void metadata_of_methods(void **state)
+{
+    const assay_verify_options o = assay_verify_options_default();
+    assay_image               *r = normal_images_make(*state, 10, 0.5, 256),
+                *made            = normal_images_make(*state, 9, 0.5, 64);
+    const assay_image *c         = made;
+    assay_verdict     *v         = NULL;
+    assert_int_equal(assay_verdict_create(*state, "c", "r", &v), ASSAY_OK);
+    assay_image_set_attribute(made, "assay:method", "splat");
+    assay_image_set_attribute(made, "assay:splat.bounces", "3");
+    assay_image_set_attribute(made, "assay:splat.debug", "off");
+    assay_image_set_attribute(made, "oiio:ColorSpace", "lin_rec709");
+    assay_image_set_attribute(r, "assay:method", "path");
+    assay_image_set_attribute(r, "assay:path.bounces", "3");
+    assert_int_equal(assay_verify_images(&c, 1, r, &o, v), ASSAY_OK);
+    assay_image_set_attribute(r, "assay:path.bounces", "4");
+    assert_int_equal(assay_verify_images(&c, 1, r, &o, v), ASSAY_ERR_ARGUMENT);
+    assert_non_null(strstr(assay_context_error(*state), "bounces"));
+    assay_image_set_attribute(r, "assay:path.bounces", "3");
+    assay_image_set_attribute(made, "assay:splat.debug", "weights");
+    assert_int_equal(assay_verify_images(&c, 1, r, &o, v), ASSAY_ERR_ARGUMENT);
+    assay_image_set_attribute(made, "assay:splat.debug", "off");
+    assay_image_set_attribute(made, "oiio:ColorSpace", "sRGB");
+    assert_int_equal(assay_verify_images(&c, 1, r, &o, v), ASSAY_ERR_ARGUMENT);
+    assert_non_null(strstr(assay_context_error(*state), "sRGB"));
+    assay_verdict_destroy(v);
+    assay_image_destroy(made);
+    assay_image_destroy(r);
+}
+
+static assay_status compare_runs(assay_context *context, void *user)
+{
+    const assay_image *const  *images = user;
+    const assay_verify_options o      = assay_verify_options_default();
+    assay_verdict             *v      = NULL;
+    assay_status               status = assay_verdict_create(context, "c", "r", &v);
+    if (status == ASSAY_OK) {
+        status = assay_verify_images(images, 2, images[2], &o, v);
+        assert_true(status == ASSAY_OK || assay_verdict_count(v) == 0);
+    }
+    assay_verdict_destroy(v);
+    return status;
+}
+
+static void every_refused_block(void **state)
+{
+    const assay_image *images[3] = {normal_images_make(*state, 50, 0.5, 64),
+                                    normal_images_make(*state, 51, 0.5, 64),
+                                    normal_images_make(*state, 52, 0.5, 256)};
+    assert_true(failing_each(compare_runs, images) > 20);
+    for (int k = 0; k < 3; k++) {
+        assay_image_destroy((assay_image *)images[k]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(bad_values, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(missing_channels, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(reference_without_variance, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(metadata, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(metadata_of_methods, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(every_refused_block, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
