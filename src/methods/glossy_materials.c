@@ -43,7 +43,8 @@ static assay_status measure(assay_context *context, const assay_material_grid_se
     return status;
 }
 
-static assay_status make_material(assay_context *context, const assay_material *m,
+static assay_status make_material(assay_context *context, const char *method,
+                                  const assay_material               *m,
                                   const assay_material_grid_settings *settings, double accuracy,
                                   assay_material_grids *grids)
 {
@@ -51,7 +52,7 @@ static assay_status make_material(assay_context *context, const assay_material *
     const char *problem = assay_material_grids_problem(m);
     if (problem) {
         assay_inform(context, ASSAY_LOG_INFO,
-                     "radiance-cache: material '%s' %s: its glossy light comes from paths", name,
+                     "%s: material '%s' %s: its glossy light comes from paths", method, name,
                      problem);
         return ASSAY_OK;
     }
@@ -61,14 +62,14 @@ static assay_status make_material(assay_context *context, const assay_material *
         return status;
     }
     assay_inform(context, ASSAY_LOG_INFO,
-                 "radiance-cache: order %d holds %.4f of the lobe of material '%s': %s",
+                 "%s: order %d holds %.4f of the lobe of material '%s': %s", method,
                  assay_basis_order(settings->basis), share, name,
                  share >= accuracy ? "within reach" : "its glossy light comes from paths");
     return share >= accuracy ? assay_material_grids_create(context, settings, m, grids) : ASSAY_OK;
 }
 
 /* seen: a flag a material, all false. */
-static assay_status make_all(assay_context *context, const assay_scene *scene,
+static assay_status make_all(assay_context *context, const char *method, const assay_scene *scene,
                              const assay_material_grid_settings *settings, double accuracy,
                              bool *seen, glossy_materials *made)
 {
@@ -77,7 +78,8 @@ static assay_status make_all(assay_context *context, const assay_scene *scene,
         const uint32_t        index    = scene->shapes[i].material;
         const assay_material *material = &scene->materials[index];
         if (!seen[index] && is_glossy(material)) {
-            status    = make_material(context, material, settings, accuracy, &made->grids[index]);
+            status =
+                make_material(context, method, material, settings, accuracy, &made->grids[index]);
             made->any = made->any || made->grids[index].slope;
         }
         seen[index] = true;
@@ -85,7 +87,8 @@ static assay_status make_all(assay_context *context, const assay_scene *scene,
     return status;
 }
 
-assay_status glossy_materials_make(assay_context *context, const assay_scene *scene,
+assay_status glossy_materials_make(assay_context *context, const char *method,
+                                   const assay_scene                  *scene,
                                    const assay_material_grid_settings *settings, double accuracy,
                                    glossy_materials *materials_out)
 {
@@ -94,7 +97,7 @@ assay_status glossy_materials_make(assay_context *context, const assay_scene *sc
     bool        *seen     = assay_allocate(context, scene->material_count, sizeof *seen);
     assay_status status   = ASSAY_ERR_MEMORY;
     if (made.grids && seen) {
-        status = make_all(context, scene, settings, accuracy, seen, &made);
+        status = make_all(context, method, scene, settings, accuracy, seen, &made);
     } else {
         assay_fail_memory(context, "BRDFs in harmonics");
     }

@@ -311,7 +311,7 @@ static void compare_all(bench *b)
     glossy_materials            made       = {0};
     assay_irradiance_cache     *irradiance = NULL;
     assay_radiance_cache       *radiance   = NULL;
-    require(b->context, assay_radiance_params_read(b->context, b->params, &read));
+    require(b->context, assay_radiance_params_read(b->context, "splat", b->params, &read));
     require(b->context,
             assay_cache_params_read(b->context, b->params, &read.cache.records, &image));
     require(b->context,
