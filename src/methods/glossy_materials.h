@@ -8,7 +8,7 @@
 /* Lobes of all materials in use, less their Lambertians. */
 typedef struct {
     assay_context        *context;
-    assay_material_grids *grids; /* a material; zeros: not within reach */
+    assay_material_grids *grids; /* a material; zeros: not within reach; some share one */
     uint32_t              count;
     bool                  any; /* within reach */
 } glossy_materials;
