@@ -432,6 +432,31 @@ static void refused_and_cancelled(void **state)
     assert_true(until_success(false, ASSAY_ERR_CANCELLED) > 20);
 }
 
+/* Two materials of one lobe and a third: grids are released as often as made. */
+static void lobes_that_are_shared(void **state)
+{
+    (void)state;
+    static const char *const colors[] = {"[0.9,0.6,0.3,1]", "[0.2,0.3,0.4,1]", "[0.9,0.6,0.3,1]"};
+    failing_memory           memory   = {0};
+    assay_context           *context  = failing_context(&memory);
+    scene_builder           *b        = scene_builder_create();
+    for (int i = 0; i < 3; i++) {
+        char text[256];
+        snprintf(text, sizeof text,
+                 "\"pbrMetallicRoughness\":{\"baseColorFactor\":%s,\"metallicFactor\":1,"
+                 "\"roughnessFactor\":%g}",
+                 colors[i], i == 1 ? 0.8 : 0.6);
+        scene_builder_sphere(b, scene_builder_material(b, text), vec3(i - 1.0, 0, 0), 0.4, 2);
+    }
+    scene_builder_camera(b, vec3(0, 0, 3), vec3(0, 0, 0), 1.0);
+    assay_scene   *scene = scene_builder_load(b, context, NULL);
+    const uint64_t live  = memory.live;
+    assert_int_equal(quick_render(context, scene, "radiance-cache"), ASSAY_OK);
+    assert_true(memory.live == live);
+    assay_scene_destroy(scene);
+    assay_context_destroy(context);
+}
+
 /* Eq. 3.30 has no angle beyond 90 degrees, and a record of a = 1.2 reaches there. */
 static void rotations_that_are_undefined(void **state)
 {
@@ -507,6 +532,7 @@ int main(void)
         cmocka_unit_test(same_bits_for_all_threads),
         cmocka_unit_test(passes),
         cmocka_unit_test(refused_and_cancelled),
+        cmocka_unit_test(lobes_that_are_shared),
         cmocka_unit_test(rotations_that_are_undefined),
         cmocka_unit_test(messages_name_their_method),
     };
