@@ -20,7 +20,7 @@
 #include "scene/scene_build.h"
 #include "trace/visible_point.h"
 
-enum { SIDE = 64, RECORDS = 64, LEAST_ROUNDS = 3, MOST_ROUNDS = 50, THREADS = 2, LIGHTS = 2 };
+enum { SIDE = 64, RECORDS = 100, LEAST_ROUNDS = 2, MOST_ROUNDS = 50, THREADS = 2, LIGHTS = 2 };
 
 /* s, of one line of the table: rounds are short and many, so that some have the machine alone. */
 static const double PATIENCE = 0.5;
