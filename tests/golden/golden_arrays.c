@@ -1,7 +1,7 @@
 /* golden_arrays.c - what tests/tools/golden.sh needs to know of bundles and images.
  *
  *     golden_arrays list BUNDLE         version, seed, samples, and a line an array with its hash:
- *                                       what the camera sees, then records, then what follows
+ *                                       what the camera sees, records, what follows, totals
  *     golden_arrays keep IN OUT         the golden part of an image: R G B and their variance
  *     golden_arrays digest IMAGE        hash of its values
  *     golden_arrays compare IMAGE NOW   first pixel that differs; exit code 1 where there is one
@@ -126,7 +126,7 @@ static void list_samples(assay_context *context, const char *folder)
 }
 
 /* What comes earlier on the way from the scene to the image has a smaller stage. */
-enum { STAGES = 3 };
+enum { STAGES = 4 };
 static int stage_of(const char *name)
 {
     static const char *const early[] = {"environment/", "records", "radiance_records"};
@@ -138,7 +138,7 @@ static int stage_of(const char *name)
             return 1;
         }
     }
-    return 2;
+    return strstr(name, "/total") ? 3 : 2;
 }
 
 static void list_array(assay_context *context, const char *folder, const char *name,

@@ -1,4 +1,5 @@
 #!/bin/sh
+# shellcheck disable=SC2013,SC2046
 # golden.sh check [quick | ENTRY...]    renders the golden images again and compares every bit
 # golden.sh renew                       the same, and takes what changed, with $REASON
 #
