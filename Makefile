@@ -46,6 +46,7 @@ BENCHES := $(BENCH_C:%.c=$(BUILD)/%)
 TABLES  := $(TABLE_C:%.c=$(BUILD)/%)
 OURS    := $(wildcard include/assay/*.h src/*/*.[ch] src/*/*/*.[ch] src/*/*.cpp scenes/gen/*.[ch] \
              refdata/gen/*.[ch] tests/*/*.[ch])
+TOOL_C  := $(wildcard tests/golden/golden_*.c)
 GOLDEN_TOOL := $(BUILD)/tests/golden/golden_arrays
 
 .PHONY: all help deps deps-test demo test install uninstall scenes ref ref-update golden \
@@ -249,10 +250,10 @@ CPPCHECK := cppcheck --quiet --error-exitcode=1 --enable=warning,performance,por
 lint: layers ## clang-format, clang-tidy, cppcheck: all clean
 	@$(call install_missing,$(DEPS_LINT))
 	clang-format --dry-run -Werror $(OURS)
-	clang-tidy --quiet $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) -- $(CPPFLAGS) -std=c11 \
+	clang-tidy --quiet $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) $(TOOL_C) -- $(CPPFLAGS) -std=c11 \
 	  2>&1 | $(ONLY_FINDINGS)
 	clang-tidy --quiet $(LIB_CXX) -- $(CPPFLAGS) -std=c++17 2>&1 | $(ONLY_FINDINGS)
-	$(CPPCHECK) --std=c11 $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) $(TEST_C) $(BENCH_C) $(TABLE_C)
+	$(CPPCHECK) --std=c11 $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) $(TOOL_C) $(TEST_C) $(BENCH_C) $(TABLE_C)
 	$(CPPCHECK) --std=c++17 --suppress=passedByValue $(LIB_CXX)
 
 # ---- installing ----
