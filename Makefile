@@ -46,9 +46,11 @@ BENCHES := $(BENCH_C:%.c=$(BUILD)/%)
 TABLES  := $(TABLE_C:%.c=$(BUILD)/%)
 OURS    := $(wildcard include/assay/*.h src/*/*.[ch] src/*/*/*.[ch] src/*/*.cpp scenes/gen/*.[ch] \
              refdata/gen/*.[ch] tests/*/*.[ch])
+TOOL_C  := $(wildcard tests/golden/golden_*.c)
+GOLDEN_TOOL := $(BUILD)/tests/golden/golden_arrays
 
-.PHONY: all help deps deps-test demo test install uninstall scenes ref ref-update figures layers \
-        format lint bench tables mutants check-sanitize check-arm64 fuzz clean
+.PHONY: all help deps deps-test demo test install uninstall scenes ref ref-update golden \
+        golden-check figures layers format lint bench tables mutants check-sanitize check-arm64 fuzz clean
 all: $(BUILD)/assay ## build the command
 
 help: ## list the targets
@@ -112,7 +114,7 @@ demo: deps ## build, render our Cornell box, write EXR and PNG
 	@echo "Next: $(BUILD)/assay render --help"
 
 test: deps-test ## build and run all tests
-	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(TESTS) $(BUILD)/make_scenes
+	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(TESTS) $(BUILD)/make_scenes $(GOLDEN_TOOL)
 	@$(MUTANT_ENV) ASSAY_BIN=$(BUILD)/assay tests/tools/run.sh $(TEST_SCRIPTS) $(TESTS)
 
 MUTANT_LISTS = tests/mutants/*.txt
@@ -183,6 +185,17 @@ ref-update: ## make the certified tables again and put them in place
 	@$(MAKE) --no-print-directory -s $(REF_TOOLS)
 	@refdata/gen/make_tables.sh update $(REF_TOOLS)
 
+# ---- golden images ----
+GOLDEN_ENV = BUILD=$(BUILD) ASSAY_BIN=$(BUILD)/assay
+golden-check: deps-test ## render the golden images again and compare every bit
+	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(GOLDEN_TOOL)
+	@$(GOLDEN_ENV) tests/tools/golden.sh check
+
+golden: export REASON := $(value REASON)
+golden: deps-test ## take what renders differently now: make golden REASON="why"
+	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(GOLDEN_TOOL)
+	@$(GOLDEN_ENV) tests/tools/golden.sh renew
+
 # ---- pictures ----
 FIGURES := docs/images
 figures: all ## draw the pictures of docs/methods again
@@ -237,10 +250,10 @@ CPPCHECK := cppcheck --quiet --error-exitcode=1 --enable=warning,performance,por
 lint: layers ## clang-format, clang-tidy, cppcheck: all clean
 	@$(call install_missing,$(DEPS_LINT))
 	clang-format --dry-run -Werror $(OURS)
-	clang-tidy --quiet $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) -- $(CPPFLAGS) -std=c11 \
+	clang-tidy --quiet $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) $(TOOL_C) -- $(CPPFLAGS) -std=c11 \
 	  2>&1 | $(ONLY_FINDINGS)
 	clang-tidy --quiet $(LIB_CXX) -- $(CPPFLAGS) -std=c++17 2>&1 | $(ONLY_FINDINGS)
-	$(CPPCHECK) --std=c11 $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) $(TEST_C) $(BENCH_C) $(TABLE_C)
+	$(CPPCHECK) --std=c11 $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) $(TOOL_C) $(TEST_C) $(BENCH_C) $(TABLE_C)
 	$(CPPCHECK) --std=c++17 --suppress=passedByValue $(LIB_CXX)
 
 # ---- installing ----
@@ -268,5 +281,6 @@ clean: ## remove everything that was built
 	rm -rf build
 
 -include $(wildcard $(REF_BUILD)/*.d)
--include $(LIB_O:.o=.d) $(CLI_O:.o=.d) $(GEN_O:.o=.d) $(HELP_O:.o=.d) $(TESTS:=.d) $(BENCHES:=.d) $(TABLES:=.d)
+-include $(LIB_O:.o=.d) $(CLI_O:.o=.d) $(GEN_O:.o=.d) $(HELP_O:.o=.d) $(TESTS:=.d) $(BENCHES:=.d) $(TABLES:=.d) \
+         $(GOLDEN_TOOL).d
 .SECONDARY:
