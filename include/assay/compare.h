@@ -46,6 +46,9 @@ ASSAY_API assay_channel_difference assay_comparison_at(const assay_comparison *c
 /* True where sizes, channel sets, and every bit of every pixel are the same. */
 ASSAY_API bool assay_comparison_identical(const assay_comparison *comparison);
 
+/* DOMAIN where a value of a FLOAT channel is NaN or infinite; the message says which and where. */
+ASSAY_API assay_status assay_image_check_finite(const assay_image *image);
+
 /* The difference of a colour layer as one: "" is R, G and B, "Indirect" is Indirect.R, .G and .B.
  * Means over the three channels of mean_a, mean_error, mse and relative_mse; the roots of the means
  * of rmse^2 and relative_rmse^2. */
