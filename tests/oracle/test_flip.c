@@ -122,28 +122,35 @@ static void the_scale_ends_at_one(void **state)
     assert_near((double)judge_flip_constant(green, blue), 1.0, 1e-15);
 }
 
-/* Every pixel of a small picture, at two viewing distances. */
-static void all_pixels_by_the_definition(void **state)
+/* Every pixel of two small pictures. */
+static void check_all(const assay_image *a, const assay_image *b, double exposure, double ppd)
 {
-    enum { WIDTH = 23, HEIGHT = 17 };
-    assay_image        *a = picture_random(*state, WIDTH, HEIGHT, 1.3, 2);
-    assay_image        *b = picture_random(*state, WIDTH, HEIGHT, 1.1, 3);
-    const judge_picture p = judged(a, 0.5), q = judged(b, 0.5);
-    for (int i = 0; i < 2; i++) {
-        assay_flip_summary    s;
-        assay_metrics_options options = assay_metrics_defaults();
-        options.exposure              = -1.0;
-        options.pixels_per_degree     = i ? 31.25 : 9.5;
-        assay_image *map              = flip(a, b, ASSAY_FLIP_LDR, &options, &s);
-        for (int k = 0; k < WIDTH * HEIGHT; k++) {
-            const long double exact =
-                judge_flip(&p, &q, options.pixels_per_degree, k % WIDTH, k / WIDTH);
-            assert_near((double)picture_channel(map, "FLIP")[k], (double)exact, ROUNDING);
-        }
-        assay_image_destroy(map);
+    const judge_picture   p = judged(a, exp2(exposure)), q = judged(b, exp2(exposure));
+    assay_flip_summary    s;
+    assay_metrics_options options = assay_metrics_defaults();
+    options.exposure              = exposure;
+    options.pixels_per_degree     = ppd;
+    assay_image *map              = flip(a, b, ASSAY_FLIP_LDR, &options, &s);
+    for (int k = 0; k < p.width * p.height; k++) {
+        assert_near((double)picture_channel(map, "FLIP")[k],
+                    (double)judge_flip(&p, &q, ppd, k % p.width, k / p.width), ROUNDING);
     }
+    assay_image_destroy(map);
     free((void *)p.pixels);
     free((void *)q.pixels);
+}
+
+static void all_pixels_by_the_definition(void **state)
+{
+    assay_image *a = picture_random(*state, 23, 17, 1.0, 2);
+    assay_image *b = picture_random(*state, 23, 17, 0.9, 3);
+    check_all(a, b, 0.0, 9.5);
+    check_all(a, b, -1.0, 31.25);
+    assay_image_destroy(a);
+    assay_image_destroy(b);
+    a = picture_primaries(*state, 23, 17, 2);
+    b = picture_primaries(*state, 23, 17, 3);
+    check_all(a, b, 0.0, 20.0);
     assay_image_destroy(a);
     assay_image_destroy(b);
 }
@@ -232,16 +239,21 @@ static void summaries_are_of_the_map(void **state)
 
 /* ---- HDR ---- */
 
-/* Half of the pixels at 16, most others at 1/4, one at 0 and one at 64: maximum and median are
- * known, and the curve makes 0.85 of them at both ends. */
+/* The brightest of 36 pixels is 64, the two in the middle are 3/16 and 5/16; negative light is
+ * black. The curve makes 0.85 of the brightest at the start, and of the median at the stop. */
 static void exposures_from_the_reference(void **state)
 {
-    assay_image          *a       = picture_constant(*state, 11, 3, 0.25, 0.25, 0.25);
+    assay_image          *a       = picture_constant(*state, 12, 3, 4.0, 4.0, 4.0);
     assay_metrics_options options = assay_metrics_defaults();
     for (int c = 0; c < 3; c++) {
         float *values = picture_channel(a, c == 0 ? "R" : c == 1 ? "G" : "B");
-        values[5]     = 64.0F;
-        values[9]     = -3.0F;
+        for (int i = 0; i < 17; i++) {
+            values[i] = 0.125F;
+        }
+        values[0]  = -3.0F;
+        values[17] = 0.1875F;
+        values[18] = 0.3125F;
+        values[20] = 64.0F;
     }
     for (int tone = 0; tone < 3; tone++) {
         assay_flip_summary s;

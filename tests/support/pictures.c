@@ -58,6 +58,20 @@ assay_image *picture_random(assay_context *context, int width, int height, doubl
     return image;
 }
 
+assay_image *picture_primaries(assay_context *context, int width, int height, unsigned seed)
+{
+    float       *channels[3];
+    assay_image *image = make(context, width, height, channels);
+    for (int i = 0; i < width * height; i++) {
+        const uint64_t block  = (uint64_t)(i % width / 3 + 1000 * (i / width / 3));
+        assay_random   random = assay_random_start(seed, ASSAY_STAGE_TEST, block, 0);
+        for (int c = 0; c < 3; c++) {
+            channels[c][i] = assay_random_next(&random) < 0.5 ? 0.0F : 1.0F;
+        }
+    }
+    return image;
+}
+
 float *picture_channel(const assay_image *image, const char *name)
 {
     assay_channel channel;
