@@ -46,7 +46,7 @@ static const cli_option OPTIONS[] = {
     {"stop-exposure", 0, "STOPS", "of HDR-FLIP (default: from A)"},
     {"exposures", 0, "N", "of HDR-FLIP, ends included (default: one a stop, at least 2)"},
     {"flip-map", 0, "F", "write the FLIP map, HDR unless --flip ldr: F.png in colours, F.exr"},
-    {"heat-map", 0, "F.png", "draw the relative difference"},
+    {"heat-map", 0, "F", "write the relative difference: F.png in colours, F.exr"},
     {"scale", 0, "X", "relative difference at the hot end of the map (default 0.1)"},
     {"json", 0, NULL, "print JSON"},
     CLI_MEMORY_OPTION,
@@ -220,22 +220,25 @@ static assay_status measure_picture(diff_work *work)
     return status;
 }
 
-static assay_status draw_heat_map(diff_work *work)
-{
-    assay_image *map = NULL;
-    assay_status status =
-        assay_image_heat_map(work->images[0], work->images[1], work->request->scale, &map);
-    if (status == ASSAY_OK) {
-        status = assay_image_write_png(map, "", 0.0, work->request->heat_map);
-    }
-    assay_image_destroy(map);
-    return status;
-}
-
 static bool is_exr(const char *path)
 {
     const size_t length = strlen(path);
     return length >= 4 && strcasecmp(path + length - 4, ".exr") == 0;
+}
+
+static assay_status write_heat_map(diff_work *work)
+{
+    const char  *path = work->request->heat_map;
+    const bool   exr  = is_exr(path);
+    assay_image *map  = NULL;
+    assay_status status =
+        exr ? assay_image_relative_error(work->images[0], work->images[1], &map)
+            : assay_image_heat_map(work->images[0], work->images[1], work->request->scale, &map);
+    if (status == ASSAY_OK) {
+        status = exr ? assay_image_write_exr(map, path) : assay_image_write_png(map, "", 0.0, path);
+    }
+    assay_image_destroy(map);
+    return status;
 }
 
 static assay_status write_flip_map(diff_work *work)
@@ -267,7 +270,7 @@ static assay_status compare(diff_work *work)
         status                  = explained(work, measure_picture(work));
     }
     if (status == ASSAY_OK && work->request->heat_map) {
-        status = draw_heat_map(work);
+        status = write_heat_map(work);
     }
     if (status == ASSAY_OK && work->request->flip_map) {
         status = write_flip_map(work);
@@ -289,7 +292,7 @@ static int check_map(const diff_request *r, const char *option, const char *path
 {
     int code = cli_check_not_input("diff", path, r->paths[0]);
     code     = code ? code : cli_check_not_input("diff", path, r->paths[1]);
-    if (!code && !(path == r->flip_map && is_exr(path))) {
+    if (!code && !is_exr(path)) {
         code = cli_check_extension("diff", option, path, ".png");
     }
     return code ? code : cli_check_file("diff", path);
@@ -313,7 +316,10 @@ static const char *check_together(const diff_request *r)
     if (r->flip_map && r->heat_map && strcmp(r->flip_map, r->heat_map) == 0) {
         return "--flip-map and --heat-map are the same file";
     }
-    return r->has_scale && !r->heat_map ? "--scale without --heat-map does nothing" : NULL;
+    if (r->has_scale && !r->heat_map) {
+        return "--scale without --heat-map does nothing";
+    }
+    return r->has_scale && is_exr(r->heat_map) ? "--scale does nothing to numbers" : NULL;
 }
 
 static int run(const diff_request *request)
@@ -343,7 +349,7 @@ int cli_diff(int count, char **argv)
         return CLI_EXIT_USAGE;
     }
     if (request.help) {
-        printf("usage: assay diff A.exr B.exr [--flip-map F] [--heat-map F.png] [--json] ...\n"
+        printf("usage: assay diff A.exr B.exr [--flip-map F] [--heat-map F] [--json] ...\n"
                "A is the reference. Exit code 0: every bit the same; 1: they differ.\n");
         cli_print_options(OPTIONS);
         return 0;

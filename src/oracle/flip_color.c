@@ -68,7 +68,7 @@ static hunt_lab primary(const assay_flip_colors *colors, int c)
 
 assay_flip_colors assay_flip_colors_make(void)
 {
-    assay_flip_colors colors;
+    assay_flip_colors colors = {0};
     for (int i = 0; i < 3; i++) {
         const double white = PRIMARIES[i][0] + PRIMARIES[i][1] + PRIMARIES[i][2];
         for (int k = 0; k < 3; k++) {

@@ -503,5 +503,9 @@ refuses "diff: both maps in one file" 2 "the same file" diff "$a" "$a" --heat-ma
     --flip-map "$out/f.png"
 refuses "diff: a FLIP map in another format" 2 ".png" diff "$a" "$a" --flip-map "$out/f.jpg"
 refuses "diff: missing file" 2 "missing.exr" diff "$a" "$folder/missing.exr"
-refuses "diff: heat map in another format" 2 ".png" diff "$a" "$a" --heat-map "$out/h.exr"
+refuses "diff: heat map in another format" 2 ".png" diff "$a" "$a" --heat-map "$out/h.jpg"
+refuses "diff: a scale of numbers" 2 "--scale" diff "$a" "$a" --scale 2 --heat-map "$out/h.exr"
+run diff "$a" "$b" --heat-map "$folder/heat.exr" --flip none
+"$assay" diff "$folder/heat.exr" "$folder/heat.exr" | grep -q '^RelativeError '
+result $? "diff --heat-map F.exr"
 finish

@@ -13,9 +13,8 @@ typedef struct {
     const judge_color *pixels;
 } judge_picture;
 
-/* The error of one pixel. */
-long double judge_flip(const judge_picture *a, const judge_picture *b, double pixels_per_degree,
-                       int x, int y);
+/* The error of one pixel; ppd: pixels per degree. */
+long double judge_flip(const judge_picture *a, const judge_picture *b, double ppd, int x, int y);
 
 /* The error of two colours that fill the picture. */
 long double judge_flip_constant(judge_color a, judge_color b);

@@ -63,8 +63,8 @@ assay_image *picture_primaries(assay_context *context, int width, int height, un
     float       *channels[3];
     assay_image *image = make(context, width, height, channels);
     for (int i = 0; i < width * height; i++) {
-        const uint64_t block  = (uint64_t)(i % width / 3 + 1000 * (i / width / 3));
-        assay_random   random = assay_random_start(seed, ASSAY_STAGE_TEST, block, 0);
+        const int    block  = i % width / 3 + 1000 * (i / width / 3);
+        assay_random random = assay_random_start(seed, ASSAY_STAGE_TEST, (uint64_t)block, 0);
         for (int c = 0; c < 3; c++) {
             channels[c][i] = assay_random_next(&random) < 0.5 ? 0.0F : 1.0F;
         }
