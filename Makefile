@@ -14,8 +14,9 @@ SAN     ?=
 
 # What `make deps` installs (Debian 12).
 DEPS_BUILD := gcc g++ make libembree-dev libopenexr-dev libtinygltf-dev libsleef-dev \
-              librandom123-dev libpng-dev libjpeg-dev libcjson-dev libmd-dev
-DEPS_TEST  := libcmocka-dev clang
+              librandom123-dev libpng-dev zlib1g-dev libjpeg-dev libcjson-dev \
+              libmd-dev
+DEPS_TEST  := libcmocka-dev clang chromium
 DEPS_LINT  := clang-format clang-tidy cppcheck
 DEPS_REF   := libflint-arb-dev libflint-dev libmpfr-dev
 
@@ -26,7 +27,7 @@ override CFLAGS += -std=c11 $(OPT) $(WARN) -Wstrict-prototypes -Wmissing-prototy
             -fvisibility=hidden -fPIC -pthread $(SAN)
 override CXXFLAGS += -std=c++17 $(OPT) $(WARN) -ffp-contract=off -fvisibility=hidden -fPIC $(SAN)
 override LDFLAGS += -pthread $(SAN)
-override LDLIBS += -lembree3 -lOpenEXRCore -ltinygltf -lsleef -lpng -ljpeg -lcjson -lmd -lm -lstdc++
+override LDLIBS += -lembree3 -lOpenEXRCore -ltinygltf -lsleef -lpng -lz -ljpeg -lcjson -lmd -lm -lstdc++
 
 LIB_C   := $(filter-out src/cli/%,$(wildcard src/*/*.c src/*/*/*.c))
 LIB_CXX := $(wildcard src/*/*.cpp)
@@ -36,7 +37,8 @@ BENCH_C := $(wildcard tests/bench/*.c)
 TABLE_C := $(wildcard tests/tables/*.c)
 HELP_C  := $(wildcard tests/support/*.c)
 TEST_C  := $(wildcard tests/*/test_*.c)
-LIB_O   := $(LIB_C:%.c=$(BUILD)/%.o) $(LIB_CXX:%.cpp=$(BUILD)/%.o)
+PAGE    := $(wildcard src/oracle/report/*)
+LIB_O   := $(LIB_C:%.c=$(BUILD)/%.o) $(LIB_CXX:%.cpp=$(BUILD)/%.o) $(BUILD)/report_page.o
 CLI_O   := $(CLI_C:%.c=$(BUILD)/%.o)
 GEN_O   := $(GEN_C:%.c=$(BUILD)/%.o)
 HELP_O  := $(HELP_C:%.c=$(BUILD)/%.o)
@@ -62,6 +64,13 @@ $(BUILD)/%.o: %.c
 $(BUILD)/%.o: %.cpp
 	@mkdir -p $(@D)
 	$(CXX) $(CPPFLAGS) $(CXXFLAGS) -MMD -MP -c $< -o $@
+
+$(BUILD)/report_page.c: $(PAGE)
+	@mkdir -p $(@D)
+	src/oracle/report/embed.sh > $@.tmp && mv $@.tmp $@
+
+$(BUILD)/report_page.o: $(BUILD)/report_page.c
+	$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@
 
 $(BUILD)/libassay.a: $(LIB_O)
 	@rm -f $@
