@@ -15,9 +15,9 @@
 enum { RECORDS_SHOWN = 20000 };
 
 typedef struct {
-    assay_camera camera;
-    int          width, height;
-    const float *depth; /* of each pixel, m; NULL: not known */
+    assay_camera  camera;
+    int           width, height;
+    const double *depth; /* of each pixel, m; NULL: not known */
 } projection;
 
 static bool read_vector(const assay_image *image, const char *name, assay_vec3 *out)
@@ -107,19 +107,15 @@ static void put_records(const projection *p, const assay_array *positions,
 }
 
 static assay_status read_depth(const assay_report_source *source, projection *p,
-                               assay_image **depth_out)
+                               assay_array **depth_out)
 {
-    assay_channel channel;
     if (!assay_bundle_lists(source->bundle, "gbuffer/depth")) {
         return ASSAY_OK;
     }
     const assay_status status =
-        assay_bundle_read_image(source->bundle, "gbuffer/depth", depth_out);
-    if (status == ASSAY_OK && assay_image_width(*depth_out) == p->width &&
-        assay_image_height(*depth_out) == p->height &&
-        assay_image_find_channel(*depth_out, "Z", &channel) &&
-        channel.type == ASSAY_CHANNEL_FLOAT) {
-        p->depth = channel.data.f32;
+        assay_bundle_read_array(source->bundle, "gbuffer/depth", "Z", depth_out);
+    if (status == ASSAY_OK && assay_array_rows(*depth_out) == (size_t)p->width * (size_t)p->height) {
+        p->depth = assay_array_values(*depth_out);
     }
     return status;
 }
@@ -135,8 +131,7 @@ assay_status assay_report_records_put(const assay_report_source *source, assay_r
         if (!assay_bundle_lists(source->bundle, position) || !find_camera(source->image, &p)) {
             continue;
         }
-        assay_array *positions = NULL, *radii = NULL;
-        assay_image *depth  = NULL;
+        assay_array *positions = NULL, *radii = NULL, *depth = NULL;
         assay_status status = read_depth(source, &p, &depth);
         if (status == ASSAY_OK) {
             status = assay_bundle_read_table(source->bundle, position, SIZE_MAX, 3, &positions);
@@ -150,7 +145,7 @@ assay_status assay_report_records_put(const assay_report_source *source, assay_r
         }
         assay_array_destroy(positions);
         assay_array_destroy(radii);
-        assay_image_destroy(depth);
+        assay_array_destroy(depth);
         return status;
     }
     return ASSAY_OK;

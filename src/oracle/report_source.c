@@ -23,11 +23,12 @@ static const char *const WANTED[] = {"R",          "G",          "B",           
 
 /* Where the arrays of a bundle go. */
 static const struct {
-    const char *array, *prefix;
-    bool        needed;
-} PARTS[] = {{"radiance/total", "", true},
-             {"radiance/total_variance", "Variance.", false},
-             {"radiance/samples", "", false}};
+    const char        *array, *channels;
+    const char *const *names; /* of the image */
+    bool               needed;
+} PARTS[] = {{"radiance/total", "R G B", WANTED, true},
+             {"radiance/total_variance", "R G B", WANTED + 3, false},
+             {"radiance/samples", "SampleCount", WANTED + 6, false}};
 
 bool assay_report_is_bundle(const char *path)
 {
@@ -68,55 +69,76 @@ static assay_status read_image(assay_context *context, assay_report_source *sour
     return status;
 }
 
-static assay_status copy_channels(const assay_image *from, const char *prefix, assay_image *to)
+/* The size that the manifest gives the image. */
+static assay_status make_image(assay_context *context, assay_report_source *source)
 {
-    const size_t pixels = (size_t)assay_image_width(to) * (size_t)assay_image_height(to);
-    assay_status status = ASSAY_OK;
-    for (int i = 0; status == ASSAY_OK && i < assay_image_channel_count(from); i++) {
-        const assay_channel channel = assay_image_channel_at(from, i);
-        char                name[ASSAY_REPORT_NAME_SIZE];
-        assay_channel       copy;
-        snprintf(name, sizeof name, "%s%.200s", prefix, channel.name);
-        status = assay_image_add_channel(to, name, channel.type, &copy);
-        if (status == ASSAY_OK) {
-            memcpy(copy.data.f32, channel.data.f32, pixels * sizeof *copy.data.f32);
+    assay_bundle_entry entry;
+    const assay_status status = assay_bundle_entry_of(source->bundle, PARTS[0].array, &entry);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    if (!entry.image || entry.dimensions < 2 || entry.shape[0] > ASSAY_IMAGE_MAX_SIDE ||
+        entry.shape[1] > ASSAY_IMAGE_MAX_SIDE) {
+        return assay_fail(context, ASSAY_ERR_FORMAT, "%s: bundle: '%s' is no image", source->path,
+                          PARTS[0].array);
+    }
+    return assay_image_create(context, (int)entry.shape[1], (int)entry.shape[0], &source->image);
+}
+
+static assay_status add_channel(assay_image *image, const char *name, const assay_array *table,
+                                size_t column)
+{
+    const bool    whole = strcmp(name, "SampleCount") == 0;
+    const size_t  rows = assay_array_rows(table), columns = assay_array_columns(table);
+    const double *values = assay_array_values(table);
+    assay_channel channel;
+    const assay_status status = assay_image_add_channel(
+        image, name, whole ? ASSAY_CHANNEL_UINT : ASSAY_CHANNEL_FLOAT, &channel);
+    for (size_t i = 0; status == ASSAY_OK && i < rows; i++) {
+        const double value = values[i * columns + column];
+        if (whole) {
+            channel.data.u32[i] = value > 0.0 && value < 4294967296.0 ? (uint32_t)value : 0;
+        } else {
+            channel.data.f32[i] = (float)value;
         }
     }
     return status;
 }
 
-static assay_status add_part(assay_context *context, assay_report_source *source,
-                             const assay_image *part, size_t index)
+static assay_status add_part(assay_context *context, assay_report_source *source, size_t part)
 {
-    const int    width = assay_image_width(part), height = assay_image_height(part);
-    assay_status status = ASSAY_OK;
-    if (!source->image) {
-        status = assay_image_create(context, width, height, &source->image);
+    assay_array *table = NULL;
+    assay_status status =
+        assay_bundle_read_array(source->bundle, PARTS[part].array, PARTS[part].channels, &table);
+    const size_t pixels =
+        (size_t)assay_image_width(source->image) * (size_t)assay_image_height(source->image);
+    if (status == ASSAY_OK && assay_array_rows(table) != pixels) {
+        status = assay_fail(context, ASSAY_ERR_FORMAT, "%s: bundle: '%s' is of another size",
+                            source->path, PARTS[part].array);
     }
-    if (status == ASSAY_OK && (assay_image_width(source->image) != width ||
-                               assay_image_height(source->image) != height)) {
-        return assay_fail(context, ASSAY_ERR_FORMAT, "%s: bundle: '%s' is of another size",
-                          source->path, PARTS[index].array);
+    for (size_t c = 0; status == ASSAY_OK && c < assay_array_columns(table); c++) {
+        status = add_channel(source->image, PARTS[part].names[c], table, c);
     }
-    return status ? status : copy_channels(part, PARTS[index].prefix, source->image);
+    assay_array_destroy(table);
+    return status;
 }
 
 static assay_status read_bundle(assay_context *context, assay_report_source *source)
 {
     assay_status status = assay_bundle_open(context, source->path, &source->bundle);
+    status              = status ? status : make_image(context, source);
     for (size_t i = 0; status == ASSAY_OK && i < sizeof PARTS / sizeof PARTS[0]; i++) {
-        if (!PARTS[i].needed && !assay_bundle_lists(source->bundle, PARTS[i].array)) {
-            continue;
+        if (PARTS[i].needed || assay_bundle_lists(source->bundle, PARTS[i].array)) {
+            status = add_part(context, source, i);
         }
-        assay_image *part = NULL;
-        status            = assay_bundle_read_image(source->bundle, PARTS[i].array, &part);
-        status            = status ? status : add_part(context, source, part, i);
-        assay_image_destroy(part);
     }
-    const char *key, *value;
-    for (int i = 0; status == ASSAY_OK && assay_bundle_text_at(source->bundle, i, &key, &value);
-         i++) {
-        status = assay_image_set_attribute(source->image, key, value);
+    const int texts = assay_bundle_text_count(source->bundle);
+    for (int i = 0; status == ASSAY_OK && i < texts; i++) {
+        const char *value;
+        const char *key = assay_bundle_text_at(source->bundle, i, &value);
+        if (key && value && *key && strlen(key) < ASSAY_REPORT_NAME_SIZE) {
+            status = assay_image_set_attribute(source->image, key, value);
+        }
     }
     return status;
 }

@@ -7,6 +7,8 @@
 
 #include "assay/report.h"
 #include "core/context.h"
+#include "io/heat_map.h"
+#include "io/srgb_encode.h"
 #include "oracle/report_entry.h"
 #include "oracle/report_folder.h"
 #include "oracle/report_page.h"
@@ -40,6 +42,21 @@ static void find_title(const assay_report_options *options, const assay_report_s
     }
 }
 
+/* The scale of `assay diff --heat-map`, so that both paint alike. */
+static void put_heat_colours(assay_report_text *text)
+{
+    enum { LAST = 64 };
+    assay_report_open(text, "heat", '[');
+    for (int i = 0; i <= LAST; i++) {
+        char            hex[8];
+        const assay_rgb c = assay_heat_color((double)i / LAST);
+        snprintf(hex, sizeof hex, "#%02x%02x%02x", assay_srgb_encode8(c.r), assay_srgb_encode8(c.g),
+                 assay_srgb_encode8(c.b));
+        assay_report_put_text(text, NULL, hex);
+    }
+    assay_report_close(text, ']');
+}
+
 static void put_head(report *r, const char *title)
 {
     assay_report_text *text = r->writer.text;
@@ -52,6 +69,7 @@ static void put_head(report *r, const char *title)
     assay_report_open(text, NULL, '{');
     assay_report_put_text(text, "title", title);
     assay_report_put_text(text, "tool", assay_version());
+    put_heat_colours(text);
     assay_report_close(text, '}');
     assay_report_put_raw(text, "</script>\n");
 }
