@@ -11,6 +11,7 @@
 
 #include "assay/compare.h"
 #include "core/context.h"
+#include "core/numerics.h"
 #include "oracle/report_maps.h"
 #include "oracle/report_pack.h"
 #include "oracle/report_records.h"
@@ -48,6 +49,28 @@ static assay_status put_picture(assay_report_writer *writer, const assay_image *
     *out = (picture){writer->pictures++, planes, pack.steps, pack.floor};
     assay_report_pack_release(writer->context, &pack);
     return ASSAY_OK;
+}
+
+/* A value that about one in fifty is above, to a factor of 2; robust against the few that are far
+ * out, unlike the root of the mean square, which is taken where this is 0. */
+static double usual_maximum(const float *values, size_t pixels)
+{
+    enum { BINS = 512, MIDDLE = 256 };
+    size_t count[BINS] = {0}, above = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        int exponent = -MIDDLE;
+        if (isfinite(values[i]) && values[i] != 0.0F) {
+            frexp(values[i], &exponent);
+        }
+        count[MIDDLE + exponent]++;
+    }
+    for (int bin = BINS - 1; bin > 0; bin--) {
+        above += count[bin];
+        if (above * 50 >= pixels) {
+            return assay_exp2(bin - MIDDLE);
+        }
+    }
+    return 0.0;
 }
 
 /* Root of the mean square of the finite values of some planes; 1 where that is 0. */
@@ -88,7 +111,9 @@ static assay_status put_colour(assay_report_writer *writer, const assay_image *i
 static assay_status put_map(assay_report_writer *writer, const assay_image *size,
                             const float *values, picture *out)
 {
-    return put_picture(writer, size, 1, &values, typical(&values, 1, pixels_of(size)), out);
+    const double most = usual_maximum(values, pixels_of(size));
+    return put_picture(writer, size, 1, &values,
+                       most > 0.0 ? most : typical(&values, 1, pixels_of(size)), out);
 }
 
 /* ---- what is known ---- */
@@ -119,6 +144,7 @@ static void describe_histogram(assay_report_text *text, const char *key,
     assay_report_put_number(text, "below", (double)h->below);
     assay_report_put_number(text, "above", (double)h->above);
     assay_report_put_number(text, "notFinite", (double)h->not_finite);
+    assay_report_put_number(text, "equal", (double)h->equal);
     assay_report_open(text, "count", '[');
     for (int i = 0; i < h->bins; i++) {
         assay_report_put_number(text, NULL, (double)h->count[i]);

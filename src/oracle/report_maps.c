@@ -64,6 +64,15 @@ static void count_value(assay_report_histogram *h, double value)
     }
 }
 
+static void count_difference(assay_report_histogram *h, double difference, double value)
+{
+    if (difference == 0.0) {
+        h->equal++;
+    } else {
+        count_value(h, value);
+    }
+}
+
 static void judge_pixel(const planes *a, const planes *b, size_t i, assay_report_maps *maps)
 {
     double difference = 0.0, relative = 0.0, worst = 0.0;
@@ -74,13 +83,12 @@ static void judge_pixel(const planes *a, const planes *b, size_t i, assay_report
         const double r         = d == 0.0 ? 0.0 : isfinite(d) ? fabs(d) / scale : (double)NAN;
         difference += d / 3.0;
         relative += r / 3.0;
-        count_value(&maps->relative_histogram,
-                    r > 0.0 ? assay_log(r) * LOG10_OF_E : r == 0.0 ? -HUGE_VAL : (double)NAN);
+        count_difference(&maps->relative_histogram, d, r > 0.0 ? assay_log(r) * LOG10_OF_E : (double)NAN);
         if (maps->z) {
             const double variance = (maps->noise & ASSAY_NOISE_REFERENCE ? a->variance[c][i] : 0.0) +
                                     (maps->noise & ASSAY_NOISE_CANDIDATE ? b->variance[c][i] : 0.0);
             const double z        = d == 0.0 ? 0.0 : d / sqrt(variance);
-            count_value(&maps->z_histogram, z);
+            count_difference(&maps->z_histogram, d, z);
             worst = isnan(z) || fabs(z) > fabs(worst) ? z : worst;
         }
     }

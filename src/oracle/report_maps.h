@@ -15,6 +15,7 @@ typedef struct {
     int      bins;
     uint64_t count[ASSAY_REPORT_BINS];
     uint64_t below, above, not_finite;
+    uint64_t equal; /* counted nowhere else: no difference at all */
 } assay_report_histogram;
 
 /* Which image says how noisy it is. */

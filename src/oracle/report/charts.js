@@ -34,7 +34,7 @@ function frame({ width, height, x, y, xTicks, yTicks = [], xLabel, about, left =
 
 const SUPER = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
 const power = (base, n) => base + [...String(n)].map((digit) => SUPER[digit]).join("");
-const total = (h) => h.count.reduce((sum, n) => sum + n, 0) + h.below + h.above;
+const total = (h) => Math.max(1, h.count.reduce((sum, n) => sum + n, 0) + h.below + h.above + h.notFinite);
 const edge = (h, i) => h.low + i * h.step;
 
 function range(h, others = []) {
@@ -97,20 +97,21 @@ function quantile(h, share) {
   return edge(h, h.count.length);
 }
 
+const sayEqual = (h) => h.equal > 0 ? `${percent(h.equal / (3 * PIXELS), 2)} of all values are equal and not counted. ` : "";
+
 function relativeChart(entry) {
   const h = entry.relativeHistogram, span = range(h), ticks = [];
   for (let e = Math.ceil(edge(h, span[0])); e <= edge(h, span[1]); e++) ticks.push([e, e >= -3 && e <= 2 ? `${+(10 ** (e + 2)).toPrecision(1)} %` : power("10", e)]);
   const chart = frame({ ...SIZE, x: [edge(h, span[0]), edge(h, span[1])], y: [0, highest(h)], xTicks: ticks,
     xLabel: "relative error of a channel", about: "Histogram of relative errors" });
   bars(chart, h, span, "bar");
-  const equal = h.below / total(h);
-  if (equal < 0.5) {
+  if (total(h) > 1 && h.below < total(h) / 2) {
     const median = quantile(h, 0.5), x = chart.atX(clamp(median, edge(h, span[0]), edge(h, span[1])));
     chart.svg.append(draw("line", { class: "mark", x1: x, x2: x, y1: 12, y2: chart.bottom }),
       write(x + 5, 22, `median ${percent(10 ** median, 2)}`, { class: "tick" }));
   }
-  return figure(chart.svg, "Relative error", `95 % of all values are within ${percent(10 ** quantile(h, 0.95), 2)}. `
-    + (equal > 0 ? `${percent(equal, 2)} are equal to within 10⁻⁶. ` : "") + (h.notFinite > 0 ? `${count(h.notFinite)} are not finite.` : ""));
+  return figure(chart.svg, "Relative error", `95 % of them are within ${percent(10 ** quantile(h, 0.95), 2)}. `
+    + sayEqual(h) + (h.notFinite > 0 ? `${count(h.notFinite)} are not finite.` : ""));
 }
 
 function zChart(entry) {
@@ -129,7 +130,7 @@ function zChart(entry) {
   const outside = h.below + h.above + h.count.filter((_, i) => edge(h, i) < -3 || edge(h, i + 1) > 3).reduce((sum, n) => sum + n, 0);
   const known = ["", "of the reference alone", "of the candidate alone", "of both images"][entry.noise];
   return figure(chart.svg, "z-score", make("span", { className: "key key-mark" }, "noise alone"),
-    ` With the noise ${known}. Beyond 3 σ: ${percent(outside / total(h), 2)}; noise alone: 0.27 %. `
+    ` With the noise ${known}. Beyond 3 σ: ${percent(outside / total(h), 2)}; noise alone: 0.27 %. ` + sayEqual(h)
     + (h.below + h.above > 0 ? `${count(h.below + h.above)} values are beyond 6 σ and not drawn.` : ""));
 }
 
@@ -159,8 +160,9 @@ function convergenceChart(cost) {
   const points = pointsBy(cost), logs = (key) => points.map((p) => Math.log10(p[key]));
   const pad = (values, by) => [Math.min(...values) - by, Math.max(...values) + by];
   const x = pad(logs("x"), 0.18), y = pad(logs("y"), 0.2);
-  const chart = frame({ width: 900, height: 380, left: 58, x, y, xLabel: COSTS[cost].label, about: `Relative RMSE against ${COSTS[cost].label}`,
+  const chart = frame({ width: Math.max($("curves").clientWidth, 300), height: 380, left: 58, x, y, xLabel: COSTS[cost].label, about: `Relative RMSE against ${COSTS[cost].label}`,
     xTicks: decades(x).map((v) => [v, format(10 ** v, 2)]), yTicks: decades(y).map((v) => [v, percent(10 ** v, 2)]) });
+  const labels = [];
   const methods = [...new Set(points.map((p) => p.entry.method ?? p.entry.name))];
   methods.forEach((method, m) => {
     const line = points.filter((p) => (p.entry.method ?? p.entry.name) === method).sort((p, q) => p.x - q.x);
@@ -169,7 +171,10 @@ function convergenceChart(cost) {
     line.forEach((p, i) => chart.svg.append(draw("circle", { cx: at[i][0], cy: at[i][1], r: 4.5, style: `fill: ${hue}` },
       draw("title", {}, `${p.entry.name}: ${format(p.x)} ${COSTS[cost].label}, ${percent(p.y)}`))));
     const [lastX, lastY] = at[at.length - 1], toLeft = lastX > chart.right - 130;
-    chart.svg.append(write(lastX + (toLeft ? -9 : 9), lastY - 8, method, { class: "curve-name", style: `fill: ${hue}`, "text-anchor": toLeft ? "end" : "start" }));
+    let labelY = lastY - 9;
+    while (labels.some(([x, y]) => Math.abs(x - lastX) < 150 && Math.abs(y - labelY) < 15)) labelY -= 4;
+    labels.push([lastX, labelY]);
+    chart.svg.append(write(lastX + (toLeft ? -9 : 9), labelY, method, { class: "curve-name", style: `fill: ${hue}`, "text-anchor": toLeft ? "end" : "start" }));
   });
   return chart.svg;
 }

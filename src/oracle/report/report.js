@@ -15,11 +15,16 @@ function showCandidate() {
 function buildConvergence() {
   const costs = Object.keys(COSTS).filter((cost) => new Set(pointsBy(cost).map((p) => p.x)).size > 1);
   $("convergence").hidden = costs.length === 0;
+  window.addEventListener("resize", drawConvergence);
   if (costs.length === 0) return;
   const chosen = costs.includes("seconds") ? "seconds" : costs[0];
   $("costs").append(...costs.map((cost) => make("label", {}, make("input", { type: "radio", name: "cost", value: cost, checked: cost === chosen,
-    onchange: () => $("curves").replaceChildren(convergenceChart(cost)) }), make("span", {}, COSTS[cost].label))));
-  $("curves").replaceChildren(convergenceChart(chosen));
+    onchange: drawConvergence }), make("span", {}, COSTS[cost].label))));
+}
+
+function drawConvergence() {
+  const cost = document.querySelector("input[name=cost]:checked");
+  if (cost) $("curves").replaceChildren(convergenceChart(cost.value));
 }
 
 function sayHonestly() {

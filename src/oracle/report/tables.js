@@ -100,17 +100,42 @@ function buildChannels() {
 const COST_ROWS = [["render, s", (c) => c && format(c.seconds, 4)], ["threads", (c) => c && format(c.threads)], ["rays", (c) => c && count(c.rays)],
   ["records", (c) => c?.records ? count(c.records) : null], ["peak memory, MB", (c) => c && format(c.memory / 1e6, 3)]];
 
+/* Parameters of all methods under the same name; what they are about, by the first part of the name. */
+function rowOf(entry, key) {
+  const name = key.replace(/^assay:/, ""), own = entry.method ? entry.method + "." : null;
+  if (own && name.startsWith(own)) return ["Parameters of the method", name.slice(own.length)];
+  const [, group, rest] = name.match(/^(scene|camera)\.?(.*)$/) ?? [null, "", name];
+  return [group === "scene" ? "Scene" : group === "camera" ? "Camera" : "Image", rest || "name"];
+}
+
+function parameterRows(all) {
+  const groups = new Map(["Image", "Parameters of the method", "Scene", "Camera", "Cost"].map((name) => [name, new Map()]));
+  const put = (group, name, index, value) => {
+    const rows = groups.get(group);
+    if (!rows.has(name)) rows.set(name, all.map(() => null));
+    rows.get(name)[index] = value;
+  };
+  all.forEach((entry, index) => {
+    for (const [key, value] of entry.attributes) put(...rowOf(entry, key), index, value);
+    if (entry.samples) put("Image", "samples a pixel", index, format(entry.samples));
+    for (const [name, of] of COST_ROWS) {
+      const value = of(entry.cost);
+      if (value) put("Cost", name, index, value);
+    }
+  });
+  return groups;
+}
+
 function buildParameters() {
-  const all = [reference, ...(candidates.length > 5 ? [shown()] : candidates)];
-  const tables = all.map((entry) => new Map(entry.attributes));
-  const plain = (key) => key.replace(/^assay:/, "");
-  const keys = [...new Set(tables.flatMap((t) => [...t.keys()]))].sort();
+  const all = [reference, ...(candidates.length > 5 ? [shown()] : candidates)], only = $("only-different").checked;
   $("attributes").tHead.replaceChildren(head([["", ""], ["Reference: " + reference.name], ...all.slice(1).map((c) => [c.name])]));
-  const rows = keys.map((key) => [plain(key), tables.map((t) => t.get(key) ?? null)]);
-  rows.push(["samples a pixel", all.map((e) => e.samples ? format(e.samples) : null)]);
-  for (const [name, of] of COST_ROWS) rows.push([name, all.map((e) => of(e.cost) || null)]);
-  const only = $("only-different").checked;
-  const wanted = rows.filter(([, values]) => values.some((v) => v !== null) && (!only || values.some((v) => v !== values[0])));
-  $("attributes").tBodies[0].replaceChildren(...(wanted.length ? wanted : [["nothing differs", []]]).map(([name, values]) => make("tr", {}, cell(name, "code", "th"),
-    ...values.map((v) => cell(v, v !== null && v !== values[0] ? "code different" : "code")))));
+  const parts = [];
+  for (const [group, rows] of parameterRows(all)) {
+    const wanted = [...rows].filter(([, values]) => !only || values.some((v) => v !== values[0])).sort(([a], [b]) => a < b ? -1 : 1);
+    if (wanted.length === 0) continue;
+    parts.push(make("tr", { className: "group" }, make("th", { colSpan: all.length + 1, scope: "rowgroup" }, group)),
+      ...wanted.map(([name, values]) => make("tr", {}, cell(name, "code", "th"),
+        ...values.map((v) => cell(v, v !== null && v !== values[0] ? "code different" : "code")))));
+  }
+  $("attributes").tBodies[0].replaceChildren(...(parts.length ? parts : [make("tr", {}, make("td", { colSpan: all.length + 1 }, "Nothing differs."))]));
 }

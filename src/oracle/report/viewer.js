@@ -25,10 +25,9 @@ function numberOf(name, entry) {
   }
 }
 
-/* A scale that shows what is there: the largest channel error's power of two. */
+/* A scale that shows what is there: the floor of a packed map is what all but a few are below. */
 function startScales() {
-  const most = Math.max(...shown().channels.map((c) => c.rmse)) || 1;
-  MAPS.difference.scale = 2 ** Math.round(Math.log2(3 * most));
+  MAPS.difference.scale = shown().maps.difference.floor;
 }
 
 /* ---- thumbnails ---- */
