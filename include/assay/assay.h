@@ -7,6 +7,7 @@
 #include "assay/compare.h"
 #include "assay/context.h"
 #include "assay/image.h"
+#include "assay/metrics.h"
 #include "assay/params.h"
 #include "assay/plot.h"
 #include "assay/render.h"

@@ -29,6 +29,7 @@ static inline double assay_expm1(double x) { return Sleef_cinz_expm1d1_u10purec(
 static inline double assay_log(double x) { return Sleef_cinz_logd1_u10purec(x); }
 static inline double assay_log1p(double x) { return Sleef_cinz_log1pd1_u10purec(x); }
 static inline double assay_pow(double x, double y) { return Sleef_cinz_powd1_u10purec(x, y); }
+static inline double assay_cbrt(double x) { return Sleef_cinz_cbrtd1_u10purec(x); }
 
 /* floor without a call: without SSE4.1, which is not asked for, floor is a function. */
 static inline double assay_floor(double x)

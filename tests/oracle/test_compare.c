@@ -12,7 +12,7 @@
 
 #include "assay/compare.h"
 #include "core/random.h"
-#include "io/heat_map.h"
+#include "io/heat_color.h"
 #include "support/failing_context.h"
 #include "support/near.h"
 
