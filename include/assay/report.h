@@ -1,5 +1,5 @@
-/* report.h - a page to look at: one HTML file with pictures, maps of difference, histograms, stages,
- * records and parameters.
+/* report.h - a page to look at: one HTML file with pictures, maps of difference, histograms,
+ * stages, records and parameters.
  *
  * It needs nothing beside it and asks the network for nothing (docs/report.md). */
 #ifndef ASSAY_REPORT_H
@@ -32,10 +32,10 @@ typedef struct {
 ASSAY_API assay_report_options assay_report_options_default(void);
 
 /* Writes the page; beside and then renamed: on any error the file of that name is as it was.
- * Errors: ARGUMENT (nothing to compare, too many, sizes differ, no channels R, G and B, a verdict of
- * none of the candidates), NOT_FOUND, FORMAT, UNSUPPORTED, LIMIT, MEMORY, WRITE. */
-ASSAY_API assay_status assay_report_write(assay_context *context, const assay_report_options *options,
-                                          const char *path);
+ * Errors: ARGUMENT (nothing to compare, too many, sizes differ, no channels R, G and B, a verdict
+ * of none of the candidates), NOT_FOUND, FORMAT, UNSUPPORTED, LIMIT, MEMORY, WRITE. */
+ASSAY_API assay_status assay_report_write(assay_context              *context,
+                                          const assay_report_options *options, const char *path);
 
 #ifdef __cplusplus
 }

@@ -52,13 +52,14 @@ static const char *take(void *user, int index, const char *value)
 
 static void print_help(void)
 {
-    printf("usage: assay report CANDIDATE... --reference REF -o F.html\n"
-           "       assay report DIR -o F.html\n"
-           "One HTML file, to look at in a browser, without a network: pictures, maps of the\n"
-           "difference, histograms, stages, records, parameters. A candidate is an image, a bundle\n"
-           "(--dump), or a folder of both. Without --reference it is the image by path with the\n"
-           "most samples. NAME.json (--stats) and NAME.verdict.json (assay verify --json) beside\n"
-           "NAME.exr are taken, too. Exit code 0 whatever the images say: assay verify judges.\n");
+    printf(
+        "usage: assay report CANDIDATE... --reference REF -o F.html\n"
+        "       assay report DIR -o F.html\n"
+        "One HTML file, to look at in a browser, without a network: pictures, maps of the\n"
+        "difference, histograms, stages, records, parameters. A candidate is an image, a bundle\n"
+        "(--dump), or a folder of both. Without --reference it is the image by path with the\n"
+        "most samples. NAME.json (--stats) and NAME.verdict.json (assay verify --json) beside\n"
+        "NAME.exr are taken, too. Exit code 0 whatever the images say: assay verify judges.\n");
     cli_print_options(OPTIONS);
 }
 

@@ -1,120 +1,19 @@
 /* report_entry.c - Invariant: numbers, maps and histograms come from the images as they were read;
- * only what is shown as a picture is quantised.
- *
- * Every picture is a <script type="text/plain"> of its own, so that a browser keeps it as text and
- * runs nothing of it.  Budgets are bits a pixel: a pair of 1920 x 1080 with all maps stays near 10
- * MB in base64, and small images are kept as finely as the finest step allows. */
+ * only what is shown as a picture is quantised. */
 #include "oracle/report_entry.h"
 
 #include <math.h>
 #include <stdio.h>
 
 #include "assay/compare.h"
+#include "assay/metrics.h"
 #include "core/context.h"
 #include "core/numerics.h"
 #include "oracle/report_maps.h"
-#include "oracle/report_pack.h"
 #include "oracle/report_records.h"
 #include "scene/scene_text.h"
 
-static const int COLOUR_STEPS[] = {256, 128, 64, 32, 16, 0}; /* a power of two */
-static const int MAP_STEPS[]    = {32, 16, 8, 4, 0};
-
 enum { TEXT_SIZE = 4096 };
-
-typedef struct {
-    int    id, planes, steps;
-    double floor;
-} picture;
-
-static assay_status put_picture(assay_report_writer *writer, const assay_image *size, int planes,
-                                const float *const *values, double floor, picture *out)
-{
-    const int    width = assay_image_width(size), height = assay_image_height(size);
-    const double pixels = (double)width * height;
-    const size_t budget =
-        (size_t)(planes == 3 ? fmax(393216.0, 9.0 / 8.0 * pixels) : fmax(98304.0, 2.5 / 8.0 * pixels));
-    assay_report_pack  pack;
-    const assay_status status =
-        assay_report_pack_create(writer->context, width, height, planes, values, floor,
-                                 planes == 3 ? COLOUR_STEPS : MAP_STEPS, budget, &pack);
-    if (status != ASSAY_OK) {
-        return status;
-    }
-    char tag[64];
-    snprintf(tag, sizeof tag, "<script type=\"text/plain\" id=\"picture-%d\">", writer->pictures);
-    assay_report_put_raw(writer->text, tag);
-    assay_report_put_base64(writer->text, pack.bytes, pack.count);
-    assay_report_put_raw(writer->text, "</script>\n");
-    *out = (picture){writer->pictures++, planes, pack.steps, pack.floor};
-    assay_report_pack_release(writer->context, &pack);
-    return ASSAY_OK;
-}
-
-/* A value that about one in fifty is above, to a factor of 2; robust against the few that are far
- * out, unlike the root of the mean square, which is taken where this is 0. */
-static double usual_maximum(const float *values, size_t pixels)
-{
-    enum { BINS = 512, MIDDLE = 256 };
-    size_t count[BINS] = {0}, above = 0;
-    for (size_t i = 0; i < pixels; i++) {
-        int exponent = -MIDDLE;
-        if (isfinite(values[i]) && values[i] != 0.0F) {
-            frexp(values[i], &exponent);
-        }
-        count[MIDDLE + exponent]++;
-    }
-    for (int bin = BINS - 1; bin > 0; bin--) {
-        above += count[bin];
-        if (above * 50 >= pixels) {
-            return assay_exp2(bin - MIDDLE);
-        }
-    }
-    return 0.0;
-}
-
-/* Root of the mean square of the finite values of some planes; 1 where that is 0. */
-static double typical(const float *const *values, int planes, size_t pixels)
-{
-    double sum = 0.0, count = 0.0;
-    for (int p = 0; p < planes; p++) {
-        for (size_t i = 0; i < pixels; i++) {
-            const double v = values[p][i];
-            if (isfinite(v)) {
-                sum += v * v;
-                count += 1.0;
-            }
-        }
-    }
-    return sum > 0.0 ? sqrt(sum / count) : 1.0;
-}
-
-static size_t pixels_of(const assay_image *image)
-{
-    return (size_t)assay_image_width(image) * (size_t)assay_image_height(image);
-}
-
-/* Below 2^-20 of the typical value steps are even: darker than any exposure of the page shows. */
-static assay_status put_colour(assay_report_writer *writer, const assay_image *image, picture *out)
-{
-    const float             *values[3];
-    static const char *const names[3] = {"R", "G", "B"};
-    for (int c = 0; c < 3; c++) {
-        assay_channel channel;
-        assay_image_find_channel(image, names[c], &channel);
-        values[c] = channel.data.f32;
-    }
-    return put_picture(writer, image, 3, values, 0x1p-20 * typical(values, 3, pixels_of(image)),
-                       out);
-}
-
-static assay_status put_map(assay_report_writer *writer, const assay_image *size,
-                            const float *values, picture *out)
-{
-    const double most = usual_maximum(values, pixels_of(size));
-    return put_picture(writer, size, 1, &values,
-                       most > 0.0 ? most : typical(&values, 1, pixels_of(size)), out);
-}
 
 /* ---- what is known ---- */
 
@@ -123,16 +22,6 @@ static void put_clean(assay_report_text *text, const char *key, const char *valu
     char clean[TEXT_SIZE];
     assay_text_clean(value, clean, sizeof clean);
     assay_report_put_text(text, key, clean);
-}
-
-static void describe_picture(assay_report_text *text, const char *key, const picture *p)
-{
-    assay_report_open(text, key, '{');
-    assay_report_put_number(text, "id", p->id);
-    assay_report_put_number(text, "planes", p->planes);
-    assay_report_put_number(text, "steps", p->steps);
-    assay_report_put_number(text, "floor", p->floor);
-    assay_report_close(text, '}');
 }
 
 static void describe_histogram(assay_report_text *text, const char *key,
@@ -171,8 +60,10 @@ static void describe_cost(assay_report_text *text, const assay_report_source *so
 {
     static const struct {
         const char *key, *name, *inside;
-    } numbers[] = {{"seconds", "seconds", "render"}, {"records", "records", NULL},
-                   {"rays", "rays", "total"},        {"memory", "memory_bytes", "peak"},
+    } numbers[] = {{"seconds", "seconds", "render"},
+                   {"records", "records", NULL},
+                   {"rays", "rays", "total"},
+                   {"memory", "memory_bytes", "peak"},
                    {"threads", "threads", NULL}};
     if (!source->stats) {
         return;
@@ -187,7 +78,7 @@ static void describe_cost(assay_report_text *text, const assay_report_source *so
 }
 
 static assay_status describe_source(assay_report_text *text, const assay_report_source *source,
-                                    const picture *colour)
+                                    const assay_report_picture *colour)
 {
     assay_report_histogram luminance;
     const char            *method = assay_report_source_method(source);
@@ -198,7 +89,8 @@ static assay_status describe_source(assay_report_text *text, const assay_report_
     assay_report_put_number(text, "width", assay_image_width(source->image));
     assay_report_put_number(text, "height", assay_image_height(source->image));
     assay_report_put_number(text, "samples", assay_report_source_samples(source));
-    describe_picture(text, "colour", colour);
+    assay_report_describe_picture(text, "colour", colour);
+    assay_report_put_number(text, "exposure", assay_report_exposure(source->image));
     assay_report_luminance(source->image, &luminance);
     describe_histogram(text, "luminance", &luminance);
     describe_attributes(text, source->image);
@@ -248,27 +140,84 @@ static assay_status describe_channels(assay_report_text *text, const assay_image
 }
 
 typedef struct {
-    picture colour, difference, relative, z;
+    assay_report_picture colour, difference, relative, z, flip;
 } candidate_pictures;
 
-static assay_status put_candidate_pictures(assay_report_writer *writer, const assay_image *image,
-                                           const assay_report_maps *maps, candidate_pictures *out)
+/* How different the images look; map is NULL where a value is not finite. */
+typedef struct {
+    assay_image       *map;
+    assay_flip_summary flip;
+    double             ssim, exposure;
+} appearance;
+
+static assay_status judge_appearance(const assay_image *reference, const assay_image *candidate,
+                                     appearance *out)
 {
-    assay_status status = put_colour(writer, image, &out->colour);
-    status = status ? status : put_map(writer, image, maps->difference, &out->difference);
-    status = status ? status : put_map(writer, image, maps->relative, &out->relative);
-    return status || !maps->z ? status : put_map(writer, image, maps->z, &out->z);
+    assay_metrics_options options = assay_metrics_defaults();
+    options.exposure              = assay_report_exposure(reference);
+    out->exposure                 = options.exposure;
+    assay_status status =
+        assay_image_flip(reference, candidate, ASSAY_FLIP_HDR, &options, &out->flip, &out->map);
+    if (status == ASSAY_OK) {
+        status = assay_image_ssim(reference, candidate, &options, &out->ssim);
+    }
+    return status == ASSAY_ERR_DOMAIN ? ASSAY_OK : status;
+}
+
+static assay_status put_flip_map(assay_report_writer *writer, const appearance *look,
+                                 assay_report_picture *out)
+{
+    assay_channel channel;
+    if (!look->map || !assay_image_find_channel(look->map, "FLIP", &channel)) {
+        return ASSAY_OK;
+    }
+    return assay_report_put_map(writer, look->map, channel.data.f32, out);
+}
+
+static void describe_appearance(assay_report_text *text, const appearance *look)
+{
+    if (!look->map) {
+        return;
+    }
+    assay_report_open(text, "flip", '{');
+    assay_report_put_number(text, "mean", look->flip.mean);
+    assay_report_put_number(text, "weightedMedian", look->flip.weighted_median);
+    assay_report_put_number(text, "maximum", look->flip.maximum);
+    assay_report_put_number(text, "maxX", look->flip.max_x);
+    assay_report_put_number(text, "maxY", look->flip.max_y);
+    assay_report_put_number(text, "startExposure", look->flip.start_exposure);
+    assay_report_put_number(text, "stopExposure", look->flip.stop_exposure);
+    assay_report_close(text, '}');
+    assay_report_put_number(text, "ssim", look->ssim);
+    assay_report_put_number(text, "ssimExposure", look->exposure);
+}
+
+static assay_status put_candidate_pictures(assay_report_writer *writer, const assay_image *image,
+                                           const assay_report_maps *maps, const appearance *look,
+                                           candidate_pictures *out)
+{
+    assay_status status = assay_report_put_colour(writer, image, &out->colour);
+    status =
+        status ? status : assay_report_put_map(writer, image, maps->difference, &out->difference);
+    status = status ? status : assay_report_put_map(writer, image, maps->relative, &out->relative);
+    if (status == ASSAY_OK && maps->z) {
+        status = assay_report_put_map(writer, image, maps->z, &out->z);
+    }
+    return status ? status : put_flip_map(writer, look, &out->flip);
 }
 
 static void describe_maps(assay_report_text *text, const assay_report_maps *maps,
-                          const candidate_pictures *pictures)
+                          const appearance *look, const candidate_pictures *pictures)
 {
     assay_report_put_number(text, "noise", maps->noise);
     assay_report_open(text, "maps", '{');
-    describe_picture(text, "difference", &pictures->difference);
-    describe_picture(text, "relative", &pictures->relative);
+    assay_report_describe_picture(text, "difference", &pictures->difference);
+    assay_report_describe_picture(text, "relative", &pictures->relative);
     if (maps->z) {
-        describe_picture(text, "z", &pictures->z);
+        assay_report_describe_picture(text, "z", &pictures->z);
+    }
+    if (look->map) {
+        assay_report_describe_picture(text, "flip", &pictures->flip);
     }
     assay_report_close(text, '}');
     describe_histogram(text, "relativeHistogram", &maps->relative_histogram);
@@ -295,8 +244,8 @@ static void close_entry(assay_report_writer *writer)
 assay_status assay_report_put_reference(assay_report_writer       *writer,
                                         const assay_report_source *reference)
 {
-    picture      colour;
-    assay_status status = put_colour(writer, reference->image, &colour);
+    assay_report_picture colour;
+    assay_status         status = assay_report_put_colour(writer, reference->image, &colour);
     if (status == ASSAY_OK) {
         open_entry(writer, "reference");
         status = describe_source(writer->text, reference, &colour);
@@ -311,23 +260,29 @@ assay_status assay_report_put_candidate(assay_report_writer       *writer,
 {
     assay_report_maps  maps;
     candidate_pictures pictures;
+    appearance         look = {.map = NULL};
     assay_status       status =
         assay_report_maps_create(writer->context, reference->image, candidate->image, &maps);
     if (status != ASSAY_OK) {
         return status;
     }
-    status = put_candidate_pictures(writer, candidate->image, &maps, &pictures);
+    status = judge_appearance(reference->image, candidate->image, &look);
+    if (status == ASSAY_OK) {
+        status = put_candidate_pictures(writer, candidate->image, &maps, &look, &pictures);
+    }
     if (status == ASSAY_OK) {
         open_entry(writer, "candidate");
         status = describe_source(writer->text, candidate, &pictures.colour);
-        status = status ? status
-                        : describe_channels(writer->text, reference->image, candidate->image);
-        describe_maps(writer->text, &maps, &pictures);
+        status =
+            status ? status : describe_channels(writer->text, reference->image, candidate->image);
+        describe_maps(writer->text, &maps, &look, &pictures);
+        describe_appearance(writer->text, &look);
         if (verdict) {
             assay_report_put_json(writer->text, "verdict", verdict);
         }
         close_entry(writer);
     }
+    assay_image_destroy(look.map);
     assay_report_maps_release(writer->context, &maps);
     return status;
 }

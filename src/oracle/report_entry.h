@@ -2,14 +2,8 @@
 #ifndef ASSAY_ORACLE_REPORT_ENTRY_H
 #define ASSAY_ORACLE_REPORT_ENTRY_H
 
+#include "oracle/report_picture.h"
 #include "oracle/report_source.h"
-#include "oracle/report_text.h"
-
-typedef struct {
-    assay_context     *context;
-    assay_report_text *text;
-    int                pictures; /* written so far: their numbers */
-} assay_report_writer;
 
 /* Errors: MEMORY, and those of reading records. */
 assay_status assay_report_put_reference(assay_report_writer       *writer,

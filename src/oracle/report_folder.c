@@ -79,9 +79,9 @@ static assay_status add_all(assay_context *context, const assay_report_options *
     assay_status status = ASSAY_OK;
     for (size_t i = 0; status == ASSAY_OK && i < options->candidate_count; i++) {
         struct stat info;
-        const char *path   = options->candidates[i];
-        const bool  folder = stat(path, &info) == 0 && S_ISDIR(info.st_mode) &&
-                            !assay_report_is_bundle(path);
+        const char *path = options->candidates[i];
+        const bool  folder =
+            stat(path, &info) == 0 && S_ISDIR(info.st_mode) && !assay_report_is_bundle(path);
         status = folder ? add_folder(context, list, path) : add(context, list, path);
     }
     return status;

@@ -28,10 +28,10 @@ static void take_planes(const assay_image *image, planes *out)
         assay_image_find_channel(image, NAMES[c], &channel);
         out->value[c] = channel.data.f32;
         snprintf(name, sizeof name, "Variance.%s", NAMES[c]);
-        out->variance[c] = assay_image_find_channel(image, name, &channel) &&
-                                   channel.type == ASSAY_CHANNEL_FLOAT
-                               ? channel.data.f32
-                               : NULL;
+        out->variance[c] =
+            assay_image_find_channel(image, name, &channel) && channel.type == ASSAY_CHANNEL_FLOAT
+                ? channel.data.f32
+                : NULL;
         double sum = 0.0, count = 0.0;
         for (size_t i = 0; i < pixels; i++) {
             if (isfinite(out->value[c][i])) {
@@ -83,11 +83,13 @@ static void judge_pixel(const planes *a, const planes *b, size_t i, assay_report
         const double r         = d == 0.0 ? 0.0 : isfinite(d) ? fabs(d) / scale : (double)NAN;
         difference += d / 3.0;
         relative += r / 3.0;
-        count_difference(&maps->relative_histogram, d, r > 0.0 ? assay_log(r) * LOG10_OF_E : (double)NAN);
+        count_difference(&maps->relative_histogram, d,
+                         r > 0.0 ? assay_log(r) * LOG10_OF_E : (double)NAN);
         if (maps->z) {
-            const double variance = (maps->noise & ASSAY_NOISE_REFERENCE ? a->variance[c][i] : 0.0) +
-                                    (maps->noise & ASSAY_NOISE_CANDIDATE ? b->variance[c][i] : 0.0);
-            const double z        = d == 0.0 ? 0.0 : d / sqrt(variance);
+            const double variance =
+                (maps->noise & ASSAY_NOISE_REFERENCE ? a->variance[c][i] : 0.0) +
+                (maps->noise & ASSAY_NOISE_CANDIDATE ? b->variance[c][i] : 0.0);
+            const double z = d == 0.0 ? 0.0 : d / sqrt(variance);
             count_difference(&maps->z_histogram, d, z);
             worst = isnan(z) || fabs(z) > fabs(worst) ? z : worst;
         }
@@ -115,7 +117,7 @@ assay_status assay_report_maps_create(assay_context *context, const assay_image 
     };
     maps.difference = assay_allocate(context, pixels, sizeof *maps.difference);
     maps.relative   = assay_allocate(context, pixels, sizeof *maps.relative);
-    maps.z = maps.noise ? assay_allocate(context, pixels, sizeof *maps.z) : NULL;
+    maps.z          = maps.noise ? assay_allocate(context, pixels, sizeof *maps.z) : NULL;
     if (!maps.difference || !maps.relative || (maps.noise && !maps.z)) {
         assay_report_maps_release(context, &maps);
         return assay_fail_memory(context, "maps of difference");
@@ -138,15 +140,25 @@ void assay_report_maps_release(assay_context *context, assay_report_maps *maps)
 void assay_report_luminance(const assay_image *image, assay_report_histogram *histogram_out)
 {
     planes       p;
-    const size_t pixels = (size_t)assay_image_width(image) * (size_t)assay_image_height(image);
+    const size_t pixels      = (size_t)assay_image_width(image) * (size_t)assay_image_height(image);
     assay_report_histogram h = {.low = -20.0, .step = 0.5, .bins = 64};
     take_planes(image, &p);
     for (size_t i = 0; i < pixels; i++) {
         const double luminance =
             0.2126 * p.value[0][i] + 0.7152 * p.value[1][i] + 0.0722 * p.value[2][i];
-        count_value(&h, luminance > 0.0   ? assay_log(luminance) * LOG2_OF_E
+        count_value(&h, luminance > 0.0    ? assay_log(luminance) * LOG2_OF_E
                         : isnan(luminance) ? (double)NAN
                                            : -HUGE_VAL);
     }
     *histogram_out = h;
+}
+
+double assay_report_exposure(const assay_image *image)
+{
+    planes p;
+    take_planes(image, &p);
+    const double mean = (p.mean[0] + p.mean[1] + p.mean[2]) / 3.0;
+    return mean > 0.0
+               ? fmax(-12.0, fmin(12.0, assay_floor(0.5 - assay_log(3.0 * mean) * LOG2_OF_E)))
+               : 0.0;
 }

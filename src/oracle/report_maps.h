@@ -44,4 +44,7 @@ void         assay_report_maps_release(assay_context *context, assay_report_maps
 /* log2 of the luminance of every pixel; what is not > 0 is below. */
 void assay_report_luminance(const assay_image *image, assay_report_histogram *histogram_out);
 
+/* Whole stops that take three times the mean of R, G and B to about 1: a page begins with them. */
+double assay_report_exposure(const assay_image *image);
+
 #endif

@@ -23,8 +23,7 @@ int assay_report_quantise(double value, double floor, int steps)
     }
     double code = ASSAY_PACK_INFINITE;
     if (!isinf(value)) {
-        code = assay_floor(
-            steps * (assay_log1p(fabs(value) / floor) * 1.4426950408889634) + 0.5);
+        code = assay_floor(steps * (assay_log1p(fabs(value) / floor) * 1.4426950408889634) + 0.5);
         code = fmin(code, ASSAY_PACK_LARGEST);
     }
     return value < 0.0 ? -(int)code : (int)code;
@@ -81,7 +80,7 @@ static assay_status deflate_bytes(assay_context *context, uint8_t *from, size_t 
     size_t given = 0, taken = 0;
     int    state = Z_OK;
     while (state == Z_OK && taken <= room) {
-        const size_t in = total - given < most ? total - given : most;
+        const size_t in  = total - given < most ? total - given : most;
         const size_t out = room - taken < most ? room - taken : most;
         if (out == 0) {
             taken = room + 1;
@@ -152,11 +151,11 @@ assay_status assay_report_pack_create(assay_context *context, int width, int hei
                                       const float *const *values, double floor, const int *steps,
                                       size_t budget, assay_report_pack *pack_out)
 {
-    pack_work work = {.values = values, .pixels = (size_t)width * (size_t)height};
+    pack_work         work  = {.values = values, .pixels = (size_t)width * (size_t)height};
     assay_report_pack pack  = {width, height, planes, floor, 0, NULL, 0};
     const size_t      total = 2 * (size_t)planes * work.pixels;
     work.room               = total + total / 1000 + 64; /* what does not shrink grows by less */
-    bool there = (work.bytes = assay_allocate(context, total, 1)) &&
+    bool there              = (work.bytes = assay_allocate(context, total, 1)) &&
                  (work.packed = assay_allocate(context, work.room, 1));
     for (int p = 0; there && p < planes; p++) {
         there = (work.codes[p] = assay_allocate(context, work.pixels, sizeof *work.codes[p]));

@@ -1,5 +1,5 @@
-/* report_page.h - the page without its data: src/oracle/report/, made C by embed.sh.  Each part is a
- * text that ends with a NUL. */
+/* report_page.h - the page without its data: src/oracle/report/, made C by embed.sh.  Each part is
+ * a text that ends with a NUL. */
 #ifndef ASSAY_ORACLE_REPORT_PAGE_H
 #define ASSAY_ORACLE_REPORT_PAGE_H
 

@@ -58,8 +58,8 @@ static bool project(const projection *p, assay_vec3 position, double radius, dou
     const assay_vec3    d      = vec3_sub(position, camera->position);
     const double        depth  = vec3_dot(d, camera->forward);
     const double        aspect = (double)p->width / p->height;
-    const double half_height = camera->orthographic ? fmax(camera->ymag, camera->xmag / aspect)
-                                                    : depth * camera->tan_half_yfov;
+    const double half_height   = camera->orthographic ? fmax(camera->ymag, camera->xmag / aspect)
+                                                      : depth * camera->tan_half_yfov;
     if (!(depth > 0.0) || !(half_height > 0.0)) {
         return false;
     }
@@ -80,8 +80,8 @@ static void put_eighths(assay_report_text *text, double pixels)
     assay_report_put_number(text, NULL, assay_floor(8.0 * pixels + 0.5));
 }
 
-static void put_records(const projection *p, const assay_array *positions,
-                        const assay_array *radii, assay_report_text *text)
+static void put_records(const projection *p, const assay_array *positions, const assay_array *radii,
+                        assay_report_text *text)
 {
     const size_t  count = assay_array_rows(positions);
     const size_t  shown = count < RECORDS_SHOWN ? count : RECORDS_SHOWN;
@@ -114,7 +114,8 @@ static assay_status read_depth(const assay_report_source *source, projection *p,
     }
     const assay_status status =
         assay_bundle_read_array(source->bundle, "gbuffer/depth", "Z", depth_out);
-    if (status == ASSAY_OK && assay_array_rows(*depth_out) == (size_t)p->width * (size_t)p->height) {
+    if (status == ASSAY_OK &&
+        assay_array_rows(*depth_out) == (size_t)p->width * (size_t)p->height) {
         p->depth = assay_array_values(*depth_out);
     }
     return status;

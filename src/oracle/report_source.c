@@ -58,10 +58,9 @@ static void take_name(const char *path, char name[ASSAY_REPORT_NAME_SIZE])
 
 static assay_status read_image(assay_context *context, assay_report_source *source)
 {
-    uint8_t     *bytes = NULL;
-    size_t       count = 0;
-    assay_status status =
-        assay_read_file(context, source->path, (uint64_t)1 << 32, &bytes, &count);
+    uint8_t     *bytes  = NULL;
+    size_t       count  = 0;
+    assay_status status = assay_read_file(context, source->path, (uint64_t)1 << 32, &bytes, &count);
     if (status == ASSAY_OK) {
         status = assay_image_decode(context, bytes, count, source->path, WANTED, &source->image);
     }
@@ -88,10 +87,10 @@ static assay_status make_image(assay_context *context, assay_report_source *sour
 static assay_status add_channel(assay_image *image, const char *name, const assay_array *table,
                                 size_t column)
 {
-    const bool    whole = strcmp(name, "SampleCount") == 0;
-    const size_t  rows = assay_array_rows(table), columns = assay_array_columns(table);
-    const double *values = assay_array_values(table);
-    assay_channel channel;
+    const bool         whole = strcmp(name, "SampleCount") == 0;
+    const size_t       rows = assay_array_rows(table), columns = assay_array_columns(table);
+    const double      *values = assay_array_values(table);
+    assay_channel      channel;
     const assay_status status = assay_image_add_channel(
         image, name, whole ? ASSAY_CHANNEL_UINT : ASSAY_CHANNEL_FLOAT, &channel);
     for (size_t i = 0; status == ASSAY_OK && i < rows; i++) {
@@ -192,9 +191,9 @@ assay_status assay_report_source_read(assay_context *context, const char *path,
         return assay_fail(context, ASSAY_ERR_ARGUMENT, "%.64s...: the name is too long", path);
     }
     take_name(path, source.name);
-    assay_status status = assay_report_is_bundle(path) ? read_bundle(context, &source)
-                                                       : read_image(context, &source);
-    status              = status ? status : check_channels(context, &source);
+    assay_status status =
+        assay_report_is_bundle(path) ? read_bundle(context, &source) : read_image(context, &source);
+    status = status ? status : check_channels(context, &source);
     if (status != ASSAY_OK) {
         assay_report_source_release(&source);
         return status;

@@ -10,11 +10,11 @@
 enum { ASSAY_REPORT_NAME_SIZE = 256, ASSAY_REPORT_PATH_SIZE = 4096 };
 
 typedef struct {
-    char                 path[ASSAY_REPORT_PATH_SIZE];
-    char                 name[ASSAY_REPORT_NAME_SIZE]; /* without folder and ending, UTF-8 */
-    assay_image         *image;  /* R, G, B; Variance.R, ..., SampleCount where there are; metadata */
-    assay_bundle_reader *bundle; /* NULL where it is an image                                       */
-    cJSON               *stats;  /* what `assay render --stats` wrote beside it; NULL               */
+    char         path[ASSAY_REPORT_PATH_SIZE];
+    char         name[ASSAY_REPORT_NAME_SIZE]; /* without folder and ending, UTF-8 */
+    assay_image *image; /* R, G, B; Variance.R, ..., SampleCount where there are; metadata */
+    assay_bundle_reader *bundle; /* NULL where it is an image */
+    cJSON *stats; /* what `assay render --stats` wrote beside it; NULL               */
 } assay_report_source;
 
 /* Whether a path is a folder with a manifest.json. */
@@ -30,7 +30,8 @@ void         assay_report_source_release(assay_report_source *source);
 const char *assay_report_source_method(const assay_report_source *source);
 /* Samples a pixel, the mean over the image; 0 where it is not known. */
 double assay_report_source_samples(const assay_report_source *source);
-/* A number of the statistics ("seconds", "render"; inside may be NULL); NaN where it is not there. */
+/* A number of the statistics ("seconds", "render"; inside may be NULL); NaN where it is not there.
+ */
 double assay_report_source_stat(const assay_report_source *source, const char *name,
                                 const char *inside);
 

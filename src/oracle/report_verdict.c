@@ -27,7 +27,8 @@ static bool is_verdict(const cJSON *root)
            cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(root, "findings"));
 }
 
-/* json_out: the tree printed again, so that what follows it in the file, or hides in it, is gone. */
+/* json_out: the tree printed again, so that what follows it in the file, or hides in it, is gone.
+ */
 static assay_status read_verdict(assay_context *context, const char *path, char **json_out,
                                  char **candidate_out)
 {
@@ -71,8 +72,8 @@ assay_status assay_report_verdicts_read(assay_context *context, const assay_repo
     }
     assay_status status = ASSAY_OK;
     for (size_t i = 0; status == ASSAY_OK && i < options->verdict_count; i++) {
-        status = read_verdict(context, options->verdicts[i], &verdicts[i].json,
-                              &verdicts[i].candidate);
+        status =
+            read_verdict(context, options->verdicts[i], &verdicts[i].json, &verdicts[i].candidate);
     }
     if (status != ASSAY_OK) {
         assay_report_verdicts_release(context, verdicts, options->verdict_count);

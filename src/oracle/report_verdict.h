@@ -14,8 +14,8 @@ typedef struct {
  * Errors: NOT_FOUND, FORMAT (no verdict), LIMIT, MEMORY. */
 assay_status assay_report_verdicts_read(assay_context *context, const assay_report_options *options,
                                         assay_report_verdict **verdicts_out);
-void assay_report_verdicts_release(assay_context *context, assay_report_verdict *verdicts,
-                                   size_t count);
+void         assay_report_verdicts_release(assay_context *context, assay_report_verdict *verdicts,
+                                           size_t count);
 
 /* The verdict of this candidate (a path): that of the options, or of NAME.verdict.json beside it,
  * which goes to *own_out and is to be released with assay_text_destroy.  NULL where there is none.

@@ -1,13 +1,15 @@
 /* report_write.c - the page from end to end.
  *
- * Invariant: the page holds no date and no path of this machine, and its pictures and numbers are the
- * same whenever it is written again from the same files.  One candidate is in memory at a time. */
+ * Invariant: the page holds no date and no path of this machine, and its pictures and numbers are
+ * the same whenever it is written again from the same files.  One candidate is in memory at a time.
+ */
 #include <stdio.h>
 #include <string.h>
 
+#include "assay/metrics.h"
 #include "assay/report.h"
 #include "core/context.h"
-#include "io/heat_map.h"
+#include "io/heat_color.h"
 #include "io/srgb_encode.h"
 #include "oracle/report_entry.h"
 #include "oracle/report_folder.h"
@@ -42,22 +44,54 @@ static void find_title(const assay_report_options *options, const assay_report_s
     }
 }
 
-/* The scale of `assay diff --heat-map`, so that both paint alike. */
-static void put_heat_colours(assay_report_text *text)
+/* The scales of `assay diff --heat-map` and of FLIP, so that both paint alike. */
+enum { SHADES = 65 };
+
+static void put_shade(assay_report_text *text, double r, double g, double b)
 {
-    enum { LAST = 64 };
+    char hex[8];
+    snprintf(hex, sizeof hex, "#%02x%02x%02x", assay_srgb_encode8(r), assay_srgb_encode8(g),
+             assay_srgb_encode8(b));
+    assay_report_put_text(text, NULL, hex);
+}
+
+static void put_heat(assay_report_text *text)
+{
     assay_report_open(text, "heat", '[');
-    for (int i = 0; i <= LAST; i++) {
-        char            hex[8];
-        const assay_rgb c = assay_heat_color((double)i / LAST);
-        snprintf(hex, sizeof hex, "#%02x%02x%02x", assay_srgb_encode8(c.r), assay_srgb_encode8(c.g),
-                 assay_srgb_encode8(c.b));
-        assay_report_put_text(text, NULL, hex);
+    for (int i = 0; i < SHADES; i++) {
+        const assay_rgb c = assay_heat_color((double)i / (SHADES - 1));
+        put_shade(text, c.r, c.g, c.b);
     }
     assay_report_close(text, ']');
 }
 
-static void put_head(report *r, const char *title)
+static assay_status put_magma(assay_context *context, assay_report_text *text)
+{
+    static const char *const names[3] = {"R", "G", "B"};
+    assay_image             *ramp = NULL, *colours = NULL;
+    assay_channel            channel, rgb[3];
+    assay_status             status = assay_image_create(context, SHADES, 1, &ramp);
+    status = status ? status : assay_image_add_channel(ramp, "t", ASSAY_CHANNEL_FLOAT, &channel);
+    for (int i = 0; status == ASSAY_OK && i < SHADES; i++) {
+        channel.data.f32[i] = (float)i / (float)(SHADES - 1);
+    }
+    status = status ? status : assay_image_magma(ramp, "t", 0.0, 1.0, &colours);
+    if (status == ASSAY_OK) {
+        for (int c = 0; c < 3; c++) {
+            assay_image_find_channel(colours, names[c], &rgb[c]);
+        }
+        assay_report_open(text, "magma", '[');
+        for (int i = 0; i < SHADES; i++) {
+            put_shade(text, rgb[0].data.f32[i], rgb[1].data.f32[i], rgb[2].data.f32[i]);
+        }
+        assay_report_close(text, ']');
+    }
+    assay_image_destroy(ramp);
+    assay_image_destroy(colours);
+    return status;
+}
+
+static assay_status put_head(report *r, const char *title)
 {
     assay_report_text *text = r->writer.text;
     assay_report_put_raw(text, assay_report_page_before_title);
@@ -69,9 +103,11 @@ static void put_head(report *r, const char *title)
     assay_report_open(text, NULL, '{');
     assay_report_put_text(text, "title", title);
     assay_report_put_text(text, "tool", assay_version());
-    put_heat_colours(text);
+    put_heat(text);
+    const assay_status status = put_magma(r->writer.context, text);
     assay_report_close(text, '}');
     assay_report_put_raw(text, "</script>\n");
+    return status;
 }
 
 static assay_status check_size(assay_context *context, const assay_report_source *a,
@@ -81,10 +117,9 @@ static assay_status check_size(assay_context *context, const assay_report_source
     if (assay_image_width(b->image) == width && assay_image_height(b->image) == height) {
         return ASSAY_OK;
     }
-    return assay_fail(context, ASSAY_ERR_ARGUMENT,
-                      "%s: is of %d x %d pixels, and the reference %s of %d x %d", b->path,
-                      assay_image_width(b->image), assay_image_height(b->image), a->path, width,
-                      height);
+    return assay_fail(
+        context, ASSAY_ERR_ARGUMENT, "%s: is of %d x %d pixels, and the reference %s of %d x %d",
+        b->path, assay_image_width(b->image), assay_image_height(b->image), a->path, width, height);
 }
 
 static assay_status put_candidate(report *r, const assay_report_source *reference, const char *path)
@@ -124,11 +159,11 @@ static assay_status put_page(report *r, const assay_report_options *options)
     char                title[ASSAY_REPORT_NAME_SIZE];
     assay_context      *context   = r->writer.context;
     assay_report_source reference = {.image = NULL};
-    assay_status status = assay_report_source_read(context, r->list.reference, &reference);
+    assay_status        status = assay_report_source_read(context, r->list.reference, &reference);
     if (status == ASSAY_OK) {
         find_title(options, &reference, title);
-        put_head(r, title);
-        status = assay_report_put_reference(&r->writer, &reference);
+        status = put_head(r, title);
+        status = status ? status : assay_report_put_reference(&r->writer, &reference);
     }
     for (size_t i = 0; status == ASSAY_OK && i < r->list.count; i++) {
         status = assay_progress(context, "report", i, r->list.count);

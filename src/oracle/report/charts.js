@@ -75,6 +75,9 @@ function figure(svg, title, ...notes) {
   return make("figure", { className: "chart" }, make("h3", {}, title), svg, make("figcaption", {}, ...notes));
 }
 
+const keysOf = (...keys) => make("span", { className: "keys" },
+  ...keys.map(([name, what]) => make("span", { className: "key key-" + name }, what)));
+
 function luminanceChart(entry) {
   const a = reference.luminance, b = entry.luminance, span = range(a, [b]);
   const ticks = [];
@@ -84,8 +87,7 @@ function luminanceChart(entry) {
   steps(chart, a, span, "area-reference");
   steps(chart, b, span, "line-candidate");
   const dark = (h) => h.below > 0 ? percent(h.below / total(h), 2) : "none";
-  return figure(chart.svg, "Luminance", make("span", { className: "key key-reference" }, "reference"), " ",
-    make("span", { className: "key key-candidate" }, "candidate"), ` Black: ${dark(a)} of the reference, ${dark(b)} of the candidate.`);
+  return figure(chart.svg, "Luminance", keysOf(["reference", "reference"], ["candidate", "candidate"]), `Black: ${dark(a)} of the reference, ${dark(b)} of the candidate.`);
 }
 
 function quantile(h, share) {
@@ -129,8 +131,8 @@ function zChart(entry) {
   chart.svg.append(draw("path", { class: "mark", d: path }));
   const outside = h.below + h.above + h.count.filter((_, i) => edge(h, i) < -3 || edge(h, i + 1) > 3).reduce((sum, n) => sum + n, 0);
   const known = ["", "of the reference alone", "of the candidate alone", "of both images"][entry.noise];
-  return figure(chart.svg, "z-score", make("span", { className: "key key-mark" }, "noise alone"),
-    ` With the noise ${known}. Beyond 3 σ: ${percent(outside / total(h), 2)}; noise alone: 0.27 %. ` + sayEqual(h)
+  return figure(chart.svg, "z-score", keysOf(["mark", "noise alone"]),
+    `With the noise ${known}. Beyond 3 σ: ${percent(outside / total(h), 2)}; noise alone: 0.27 %. ` + sayEqual(h)
     + (h.below + h.above > 0 ? `${count(h.below + h.above)} values are beyond 6 σ and not drawn.` : ""));
 }
 

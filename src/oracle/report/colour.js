@@ -1,7 +1,8 @@
 /* colour.js - from codes to colours: one table a picture, made anew when exposure or scale change. */
 
 const NOT_FINITE = [0, 230, 118];
-const HEAT = page.heat.map((hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16)));
+const scaleOf = (list) => list.map((hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16)));
+const HEAT = scaleOf(page.heat), MAGMA = scaleOf(page.magma);
 const COLD = [[0, 0, 0], [12, 36, 92], [22, 88, 190], [70, 150, 245], [158, 205, 255], [235, 246, 255]];
 const WARM = [[0, 0, 0], [92, 26, 10], [190, 58, 14], [245, 124, 40], [255, 196, 128], [255, 245, 230]];
 
@@ -21,13 +22,13 @@ const MAPS = {
     about: "|difference| / (|reference| + 1 % of its mean), the mean of R, G and B: what assay diff --heat-map draws." },
   z: { label: "z-score", signed: true, unit: "σ", scale: 4,
     about: "Difference in standard errors, of the channel where it is largest. Noise alone stays within 3 nearly everywhere." },
-  flip: { label: "FLIP", signed: false, unit: "", scale: 1,
-    about: "Difference as seen when the two images alternate before the eyes; 0 to 1." },
+  flip: { label: "FLIP", signed: false, unit: "", scale: 1, colours: MAGMA,
+    about: "HDR-FLIP: how different the images look when they alternate before the eyes, 0 to 1, the worst over a range of exposures; the control above does not change it." },
 };
 
 function colourOf(map, t) {
   if (Number.isNaN(t)) return NOT_FINITE;
-  return map.signed ? along(t < 0 ? COLD : WARM, Math.abs(t)) : along(HEAT, t);
+  return map.signed ? along(t < 0 ? COLD : WARM, Math.abs(t)) : along(map.colours ?? HEAT, t);
 }
 
 const pack = ([r, g, b]) => (255 << 24 | b << 16 | g << 8 | r) >>> 0;

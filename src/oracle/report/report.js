@@ -6,9 +6,11 @@ function showCandidate() {
   buildStages();
   buildParameters();
   $("histograms").replaceChildren(luminanceChart(shown()), relativeChart(shown()), zChart(shown()));
-  const circles = circlesOf(shown()), records = shown().records ?? reference.records;
+  const circles = circlesOf(shown()), { records } = shown();
   $("records-row").hidden = circles.length === 0;
   $("records-count").textContent = records ? `${count(circles.length / 4)} of ${count(records.count)}` : "";
+  const reached = reachOf(shown());
+  $("records-about").textContent = reached < 1 ? `Circles: a R with a = ${format(reached)}, as far as a record reaches.` : "Circles: R of a record.";
   setRecords(state.records);
 }
 
@@ -207,7 +209,7 @@ function listen() {
     if (name === "candidate") chooseCandidate(+value);
   });
   $("exposure").addEventListener("input", () => setExposure(+$("exposure").value));
-  $("exposure-reset").addEventListener("click", () => setExposure(0));
+  $("exposure-reset").addEventListener("click", () => setExposure(reference.exposure));
   $("scale").addEventListener("input", () => setScale(+$("scale").value));
   $("records").addEventListener("change", () => setRecords($("records").checked));
   $("records-hidden").addEventListener("change", () => {
@@ -223,13 +225,6 @@ function listen() {
   new ResizeObserver(() => view.fitted ? fit() : place()).observe($("stage"));
 }
 
-/* The exposure to begin with: the one that maps four times the reference's mean to white. */
-function startExposure() {
-  const means = shown().channels.map((c) => c.meanReference).filter((m) => m > 0);
-  const mean = means.reduce((sum, m) => sum + m, 0) / (means.length || 1);
-  return mean > 0 ? Math.round(-Math.log2(3 * mean)) : 0;
-}
-
 function start() {
   $("stage").style.setProperty("--shape", `${WIDTH} / ${HEIGHT}`);
   $("keys").append(...KEYS.flatMap(([keys, what]) => [make("dt", {}, ...keys.split(" ").map((key) => key === "–" ? " – " : make("kbd", {}, key))), make("dd", {}, what)]));
@@ -237,7 +232,7 @@ function start() {
   buildCandidates();
   buildConvergence();
   listen();
-  state.exposure = clamp(startExposure(), -12, 12);
+  state.exposure = reference.exposure;
   chooseCandidate(0);
   setExposure(state.exposure);
   inspect(null);

@@ -142,12 +142,16 @@ function moveDivider(share) {
 
 const overlayColours = () => getComputedStyle($("stage"));
 
-function circlesOf(entry) {
-  const records = entry.records ?? reference.records;
-  return records ? records.circles : [];
+const circlesOf = (entry) => entry.records?.circles ?? [];
+
+/* How far a record reaches: a R of [ward88], where the image says what a was. */
+function reachOf(entry) {
+  const a = entry.attributes.find(([key]) => key === `assay:${entry.method}.a`);
+  return a && +a[1] > 0 ? +a[1] : 1;
 }
 
-function drawRecords(context, circles) {
+function drawRecords(context, circles, share) {
+  const faint = clamp(12 / Math.sqrt(circles.length / 4 + 1), 0.12, 0.6);
   for (const hidden of [1, 0]) {
     if (hidden && !state.hidden) continue;
     const style = overlayColours().getPropertyValue(hidden ? "--record-hidden" : "--record");
@@ -156,12 +160,12 @@ function drawRecords(context, circles) {
     for (let i = 0; i < circles.length; i += 4) {
       if (circles[i + 3] !== hidden) continue;
       const x = view.x + view.scale * circles[i] / 8, y = view.y + view.scale * circles[i + 1] / 8;
-      const radius = view.scale * circles[i + 2] / 8;
+      const radius = share * view.scale * circles[i + 2] / 8;
       context.globalAlpha = 1;
       context.beginPath();
-      context.arc(x, y, 1.6, 0, 2 * Math.PI);
+      context.arc(x, y, clamp(0.35 * view.scale, 0.9, 2.2), 0, 2 * Math.PI);
       context.fill();
-      context.globalAlpha = 0.28;
+      context.globalAlpha = faint;
       context.beginPath();
       context.arc(x, y, radius, 0, 2 * Math.PI);
       context.stroke();
@@ -193,7 +197,7 @@ function drawOverlay() {
     context.beginPath();
     context.rect(0, 0, width, height);
     context.clip();
-    if (state.records) drawRecords(context, circlesOf(shown()));
+    if (state.records) drawRecords(context, circlesOf(shown()), reachOf(shown()));
     const accent = overlayColours().getPropertyValue("--marker");
     if (state.marked) drawFrame(context, state.marked.x, state.marked.y, state.marked.width, state.marked.height, accent);
     if (state.pixel && view.scale >= 6) drawFrame(context, state.pixel.x, state.pixel.y, 1, 1, "#fff");

@@ -2,7 +2,7 @@
 
 const format = (x, digits = 4) => x === null || x === undefined || Number.isNaN(x) ? "–"
   : !Number.isFinite(x) ? (x > 0 ? "∞" : "−∞")
-  : (x !== 0 && (Math.abs(x) < 1e-3 || Math.abs(x) >= 1e5) ? x.toExponential(Math.max(digits - 2, 1))
+  : (x !== 0 && (Math.abs(x) < 1e-3 || Math.abs(x) >= 1e5) ? x.toExponential(Math.max(digits - 2, 1)).replace("e+", "e")
     : String(+x.toPrecision(digits))).replace(/-/g, "−");
 const percent = (x, digits = 3) => x === null || x === undefined || !Number.isFinite(x) ? format(x)
   : `${format(100 * x, digits)} %`;
