@@ -79,6 +79,13 @@ function drawLegend() {
   $("scale").value = Math.log2(full / map.scale);
 }
 
+/* A value of a map; what was rounded to 0 is said to be less than what would not have been. */
+function sayValue(map, picture, code) {
+  const value = code === 0 ? valueOf(picture, 1) / 2 : valueOf(picture, code);
+  const text = map.percent ? percent(value, 2) : format(value, 2) + (map.unit ? " " + map.unit : "");
+  return code === 0 ? "< " + text : text;
+}
+
 async function inspect(pixel) {
   state.pixel = pixel;
   drawOverlay();
@@ -96,8 +103,8 @@ async function inspect(pixel) {
   const rows = [["Reference", ...await colour(reference.colour)], ["Candidate", ...await colour(entry.colour)]];
   const maps = [];
   for (const name of Object.keys(entry.maps)) {
-    const picture = entry.maps[name], value = valueOf(picture, (await planesOf(picture))[0][at]);
-    maps.push([MAPS[name].label, MAPS[name].percent ? percent(value, 2) : format(value, 2) + (MAPS[name].unit ? " " + MAPS[name].unit : "")]);
+    const picture = entry.maps[name], code = (await planesOf(picture))[0][at];
+    maps.push([MAPS[name].label, sayValue(MAPS[name], picture, code)]);
   }
   if (state.pixel !== pixel) return;
   $("pixel").textContent = `Pixel (${pixel.x}, ${pixel.y})`;
@@ -176,6 +183,7 @@ function setRecords(on) {
 /* Shows a place of a finding: { x, y, width, height }, pixels. */
 function showPlace(spot) {
   state.marked = { width: 1, height: 1, ...spot };
+  if (state.mode === "slider") chooseMode("sides");
   const { width, height } = paneSize();
   const scale = clamp(Math.min(width, height) / (6 * Math.max(state.marked.width, state.marked.height)), 1, 16);
   lookAt(spot.x + (state.marked.width - 1) / 2, spot.y + (state.marked.height - 1) / 2, scale);
