@@ -1,5 +1,5 @@
 /* report_pack.c - Invariant: whoever knows floor, K and the layout below gets the integers back
- * exactly; only assay_report_quantise loses anything.
+ * exactly; only signed_log and quantise_log lose anything.
  *
  * Green comes first, red and blue as what they have more than green, for their noise is mostly its
  * noise.  An integer is predicted from its neighbours at the left and above (the median edge
@@ -15,18 +15,28 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/numerics.h"
+#include "core/parallel.h"
 
-int assay_report_quantise(double value, double floor, int steps)
+/* log2(1 + |v| / floor) with the sign of v; what has no logarithm stays as it is. */
+static float signed_log(float value, double floor)
 {
-    if (isnan(value)) {
+    if (!isfinite(value)) {
+        return value;
+    }
+    const double log = assay_log1p(fabs((double)value) / floor) * 1.4426950408889634;
+    return (float)(value < 0.0F ? -log : log);
+}
+
+static int16_t quantise_log(float log, int steps)
+{
+    if (isnan(log)) {
         return ASSAY_PACK_NAN;
     }
     double code = ASSAY_PACK_INFINITE;
-    if (!isinf(value)) {
-        code = assay_floor(steps * (assay_log1p(fabs(value) / floor) * 1.4426950408889634) + 0.5);
-        code = fmin(code, ASSAY_PACK_LARGEST);
+    if (!isinf(log)) {
+        code = fmin(assay_floor(steps * fabs((double)log) + 0.5), ASSAY_PACK_LARGEST);
     }
-    return value < 0.0 ? -(int)code : (int)code;
+    return (int16_t)(log < 0.0F ? -code : code);
 }
 
 static int16_t predict(const int16_t *row, const int16_t *above, int x)
@@ -68,24 +78,20 @@ static void *allocate(void *context, unsigned items, unsigned size)
 
 static void release(void *context, void *memory) { assay_release(context, memory); }
 
-/* Deflates `total` bytes into at most `room`; *count_out is room + 1 where they do not fit. */
+/* Deflates `total` bytes into `room`, which suffices for anything. */
 static assay_status deflate_bytes(assay_context *context, uint8_t *from, size_t total, uint8_t *to,
                                   size_t room, size_t *count_out)
 {
     const size_t most   = (size_t)1 << 30; /* zlib counts in unsigned ints */
     z_stream     stream = {.zalloc = allocate, .zfree = release, .opaque = context};
-    if (deflateInit(&stream, 6) != Z_OK) {
+    if (deflateInit2(&stream, 6, Z_DEFLATED, 15, 9, Z_RLE) != Z_OK) {
         return assay_fail_memory(context, "a compressed picture");
     }
     size_t given = 0, taken = 0;
     int    state = Z_OK;
-    while (state == Z_OK && taken <= room) {
+    while (state == Z_OK) {
         const size_t in  = total - given < most ? total - given : most;
         const size_t out = room - taken < most ? room - taken : most;
-        if (out == 0) {
-            taken = room + 1;
-            break;
-        }
         stream.next_in   = from + given;
         stream.avail_in  = (unsigned)in;
         stream.next_out  = to + taken;
@@ -95,7 +101,7 @@ static assay_status deflate_bytes(assay_context *context, uint8_t *from, size_t 
         taken += out - stream.avail_out;
     }
     deflateEnd(&stream);
-    if (state != Z_OK && state != Z_STREAM_END) {
+    if (state != Z_STREAM_END) {
         return assay_fail(context, ASSAY_ERR_INTERNAL, "zlib: error %d", state);
     }
     *count_out = taken;
@@ -104,61 +110,109 @@ static assay_status deflate_bytes(assay_context *context, uint8_t *from, size_t 
 
 typedef struct {
     const float *const *values;
+    float              *logs[3]; /* of the values: made once, quantised as often as it takes */
     int16_t            *codes[3];
     uint8_t            *bytes, *packed;
     size_t              pixels, room;
+    assay_report_pack  *pack;
 } pack_work;
 
-static void quantise(const pack_work *work, assay_report_pack *pack)
+static assay_status take_logs(void *user, uint64_t y, int worker)
 {
-    for (int p = 0; p < pack->planes; p++) {
-        for (size_t i = 0; i < work->pixels; i++) {
-            work->codes[p][i] =
-                (int16_t)assay_report_quantise(work->values[p][i], pack->floor, pack->steps);
+    const pack_work *work  = user;
+    const size_t     width = (size_t)work->pack->width;
+    (void)worker;
+    for (int p = 0; p < work->pack->planes; p++) {
+        for (size_t i = (size_t)y * width; i < ((size_t)y + 1) * width; i++) {
+            work->logs[p][i] = signed_log(work->values[p][i], work->pack->floor);
         }
     }
-    for (size_t i = 0; i < work->pixels && pack->planes == 3; i++) {
-        const int16_t green = work->codes[1][i];
-        work->codes[2][i]   = less(work->codes[2][i], green);
-        work->codes[1][i]   = less(work->codes[0][i], green);
-        work->codes[0][i]   = green;
+    return ASSAY_OK;
+}
+
+static assay_status quantise_row(void *user, uint64_t y, int worker)
+{
+    const pack_work *work  = user;
+    const size_t     width = (size_t)work->pack->width;
+    (void)worker;
+    for (size_t i = (size_t)y * width; i < ((size_t)y + 1) * width; i++) {
+        int16_t code[3] = {0, 0, 0};
+        for (int p = 0; p < work->pack->planes; p++) {
+            code[p] = quantise_log(work->logs[p][i], work->pack->steps);
+        }
+        const bool colour = work->pack->planes == 3;
+        work->codes[0][i] = colour ? code[1] : code[0];
+        if (colour) {
+            work->codes[1][i] = less(code[0], code[1]);
+            work->codes[2][i] = less(code[2], code[1]);
+        }
     }
-    uint8_t *high = work->bytes + (size_t)pack->planes * work->pixels;
-    for (int p = 0; p < pack->planes; p++) {
-        const size_t offset = (size_t)p * work->pixels;
-        spread(work->codes[p], pack->width, pack->height, work->bytes + offset, high + offset);
+    return ASSAY_OK;
+}
+
+static assay_status spread_plane(void *user, uint64_t plane, int worker)
+{
+    const pack_work *work   = user;
+    const size_t     offset = (size_t)plane * work->pixels;
+    uint8_t         *high   = work->bytes + (size_t)work->pack->planes * work->pixels;
+    (void)worker;
+    spread(work->codes[plane], work->pack->width, work->pack->height, work->bytes + offset,
+           high + offset);
+    return ASSAY_OK;
+}
+
+static assay_status quantise(assay_context *context, pack_work *work)
+{
+    const assay_status status =
+        assay_parallel_for(context, NULL, (uint64_t)work->pack->height, quantise_row, work);
+    return status ? status
+                  : assay_parallel_for(context, NULL, (uint64_t)work->pack->planes, spread_plane,
+                                       work);
+}
+
+/* The first coarser step that may fit: half as many steps take a bit from every value. */
+static const int *coarser(const int *steps, size_t count, size_t budget, size_t values)
+{
+    const double bits = 8.0 * ((double)count - (double)budget) / (double)values;
+    const int   *next = steps + 1;
+    while (next[1] && *next > *steps * assay_exp2(-0.9 * bits)) {
+        next++;
     }
+    return next;
 }
 
 static assay_status pack_planes(assay_context *context, pack_work *work, const int *steps,
                                 size_t budget, assay_report_pack *pack)
 {
-    assay_status status = ASSAY_OK;
-    for (; status == ASSAY_OK; steps++) {
-        const size_t room = steps[1] == 0 || budget > work->room ? work->room : budget;
-        pack->steps       = *steps;
-        quantise(work, pack);
-        status = deflate_bytes(context, work->bytes, 2 * (size_t)pack->planes * work->pixels,
-                               work->packed, room, &pack->count);
-        if (status == ASSAY_OK && pack->count <= room) {
-            break;
+    const size_t values = (size_t)pack->planes * work->pixels;
+    assay_status status =
+        assay_parallel_for(context, NULL, (uint64_t)pack->height, take_logs, work);
+    for (;;) {
+        pack->steps = *steps;
+        status      = status ? status : quantise(context, work);
+        status      = status ? status
+                             : deflate_bytes(context, work->bytes, 2 * values, work->packed, work->room,
+                                             &pack->count);
+        if (status != ASSAY_OK || pack->count <= budget || !steps[1]) {
+            return status;
         }
+        steps = coarser(steps, pack->count, budget, values);
     }
-    return status;
 }
 
 assay_status assay_report_pack_create(assay_context *context, int width, int height, int planes,
                                       const float *const *values, double floor, const int *steps,
                                       size_t budget, assay_report_pack *pack_out)
 {
-    pack_work         work  = {.values = values, .pixels = (size_t)width * (size_t)height};
-    assay_report_pack pack  = {width, height, planes, floor, 0, NULL, 0};
-    const size_t      total = 2 * (size_t)planes * work.pixels;
-    work.room               = total + total / 1000 + 64; /* what does not shrink grows by less */
-    bool there              = (work.bytes = assay_allocate(context, total, 1)) &&
+    assay_report_pack pack = {width, height, planes, floor, 0, NULL, 0};
+    pack_work    work = {.values = values, .pixels = (size_t)width * (size_t)height, .pack = &pack};
+    const size_t total = 2 * (size_t)planes * work.pixels;
+    work.room          = total + total / 1000 + 64; /* what does not shrink grows by less */
+    bool there         = (work.bytes = assay_allocate(context, total, 1)) &&
                  (work.packed = assay_allocate(context, work.room, 1));
     for (int p = 0; there && p < planes; p++) {
-        there = (work.codes[p] = assay_allocate(context, work.pixels, sizeof *work.codes[p]));
+        there = (work.codes[p] = assay_allocate(context, work.pixels, sizeof *work.codes[p])) &&
+                (work.logs[p] = assay_allocate(context, work.pixels, sizeof *work.logs[p]));
     }
     assay_status status = there ? pack_planes(context, &work, steps, budget, &pack)
                                 : assay_fail_memory(context, "a packed picture");
@@ -172,6 +226,7 @@ assay_status assay_report_pack_create(assay_context *context, int width, int hei
     }
     for (int p = 0; p < planes; p++) {
         assay_release(context, work.codes[p]);
+        assay_release(context, work.logs[p]);
     }
     assay_release(context, work.bytes);
     assay_release(context, work.packed);

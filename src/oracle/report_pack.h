@@ -27,7 +27,4 @@ assay_status assay_report_pack_create(assay_context *context, int width, int hei
                                       size_t budget, assay_report_pack *pack_out);
 void         assay_report_pack_release(assay_context *context, assay_report_pack *pack);
 
-/* The integer that stands for a value. */
-int assay_report_quantise(double value, double floor, int steps);
-
 #endif
