@@ -46,6 +46,9 @@ ASSAY_API assay_channel_difference assay_comparison_at(const assay_comparison *c
 /* True where sizes, channel sets, and every bit of every pixel are the same. */
 ASSAY_API bool assay_comparison_identical(const assay_comparison *comparison);
 
+/* DOMAIN where a value of a FLOAT channel is NaN or infinite; the message says which and where. */
+ASSAY_API assay_status assay_image_check_finite(const assay_image *image);
+
 /* The difference of a colour layer as one: "" is R, G and B, "Indirect" is Indirect.R, .G and .B.
  * Means over the three channels of mean_a, mean_error, mse and relative_mse; the roots of the means
  * of rmse^2 and relative_rmse^2. */
@@ -57,8 +60,13 @@ typedef struct {
 ASSAY_API bool assay_comparison_color(const assay_comparison *comparison, const char *layer,
                                       assay_color_difference *difference_out);
 
-/* A heat map of |b - a| / (|a| + 1e-2 mean_a), the mean over R, G, B (or over all common float
- * channels where there are none), on a perceptually ordered scale from 0 to `full_scale`.
+/* A map of |b - a| / (|a| + 1e-2 |mean_a|), the mean over R, G, B (or over all common float
+ * channels where there are none), as the FLOAT channel "RelativeError"; infinite where a pixel is
+ * finite in one image alone.  Errors: ARGUMENT (as compare), MEMORY. */
+ASSAY_API assay_status assay_image_relative_error(const assay_image *a, const assay_image *b,
+                                                  assay_image **map_out);
+
+/* The same as a picture (R, G, B, linear) on a perceptually ordered scale from 0 to `full_scale`.
  * Errors: ARGUMENT (as compare; full_scale not > 0), MEMORY. */
 ASSAY_API assay_status assay_image_heat_map(const assay_image *a, const assay_image *b,
                                             double full_scale, assay_image **map_out);

@@ -61,9 +61,6 @@ static double distance(hunt_lab p, hunt_lab q)
     return fabs(p.l - q.l) + sqrt(da * da + db * db);
 }
 
-/* x^p for x >= 0. */
-static double power(double x, double p) { return x > 0.0 ? assay_exp(p * assay_log(x)) : 0.0; }
-
 static hunt_lab primary(const assay_flip_colors *colors, int c)
 {
     return to_hunt_lab(colors->to_white[0][c], colors->to_white[1][c], colors->to_white[2][c]);
@@ -71,7 +68,7 @@ static hunt_lab primary(const assay_flip_colors *colors, int c)
 
 assay_flip_colors assay_flip_colors_make(void)
 {
-    assay_flip_colors colors;
+    assay_flip_colors colors = {0};
     for (int i = 0; i < 3; i++) {
         const double white = PRIMARIES[i][0] + PRIMARIES[i][1] + PRIMARIES[i][2];
         for (int k = 0; k < 3; k++) {
@@ -79,7 +76,10 @@ assay_flip_colors assay_flip_colors_make(void)
         }
     }
     invert(colors.to_white, colors.from_white);
-    colors.largest = power(distance(primary(&colors, 1), primary(&colors, 2)), EXPONENT);
+    const double distance_log = assay_log(distance(primary(&colors, 1), primary(&colors, 2)));
+    colors.largest            = assay_exp(EXPONENT * distance_log);
+    colors.log_knee           = EXPONENT * distance_log + assay_log(KNEE_AT);
+    colors.log_knee_value     = assay_log(KNEE_VALUE);
     return colors;
 }
 
@@ -105,11 +105,25 @@ static hunt_lab seen(const assay_flip_colors *colors, assay_opponent color)
                        row_times(colors->to_white[2], r, g, b));
 }
 
-double assay_flip_color_difference(const assay_flip_colors *colors, assay_opponent a,
-                                   assay_opponent b)
+double assay_flip_color_distance(const assay_flip_colors *colors, assay_opponent a,
+                                 assay_opponent b)
 {
-    const double d    = power(distance(seen(colors, a), seen(colors, b)), EXPONENT);
+    return distance(seen(colors, a), seen(colors, b));
+}
+
+/* [andersson20] section 4.1.3 and eq. 9: Delta E_c is distance^q_c on two straight pieces, Delta E
+ * is Delta E_c^(1 - Delta E_f).  On the first piece that is one power of the distance. */
+double assay_flip_error(const assay_flip_colors *colors, double distance, double feature)
+{
+    if (!(distance > 0.0)) {
+        return 0.0;
+    }
+    const double log_power = EXPONENT * assay_log(distance);
+    if (log_power < colors->log_knee) {
+        return assay_exp((1.0 - feature) * (log_power - colors->log_knee + colors->log_knee_value));
+    }
     const double knee = KNEE_AT * colors->largest;
-    return d < knee ? d * (KNEE_VALUE / knee)
-                    : KNEE_VALUE + (d - knee) / (colors->largest - knee) * (1.0 - KNEE_VALUE);
+    const double color =
+        KNEE_VALUE + (assay_exp(log_power) - knee) / (colors->largest - knee) * (1.0 - KNEE_VALUE);
+    return assay_exp((1.0 - feature) * assay_log(color));
 }

@@ -14,15 +14,20 @@ typedef struct {
 typedef struct {
     double to_white[3][3];   /* linear RGB to X / Xn, Y / Yn, Z / Zn: rows sum to 1            */
     double from_white[3][3]; /* the inverse                                                   */
-    double largest;          /* the largest difference of two colours that sRGB has, to the 0.7 */
+    double log_knee;         /* of the distance^0.7 where the scale of errors bends            */
+    double log_knee_value;   /* of the error there                                            */
+    double largest;          /* distance^0.7 of the farthest colours, green and blue          */
 } assay_flip_colors;
 
 assay_flip_colors assay_flip_colors_make(void);
 
 assay_opponent assay_flip_opponent(const assay_flip_colors *colors, assay_rgb linear);
 
-/* Delta E_c of [andersson20]: 0 to 1, of two colours that the eye's filters have gone over. */
-double assay_flip_color_difference(const assay_flip_colors *colors, assay_opponent a,
-                                   assay_opponent b);
+/* HyAB distance of two colours that the eye's filters have gone over, and Hunt's effect. */
+double assay_flip_color_distance(const assay_flip_colors *colors, assay_opponent a,
+                                 assay_opponent b);
+
+/* Delta E of [andersson20], 0 to 1: colour distance and feature difference Delta E_f as one. */
+double assay_flip_error(const assay_flip_colors *colors, double distance, double feature);
 
 #endif

@@ -143,12 +143,6 @@ static double feature_difference(double *const a[DOWN], double *const b[DOWN], i
     return sqrt((edge > point ? edge : point) / sqrt(2.0));
 }
 
-/* Delta E = Delta E_c ^ (1 - Delta E_f). */
-static double combine(double color, double feature)
-{
-    return color > 0.0 ? assay_exp((1.0 - feature) * assay_log(color)) : 0.0;
-}
-
 void assay_flip_tile(const assay_flip_job *job, const assay_tile *tile, double exposure,
                      double *scratch, float *errors_out)
 {
@@ -164,11 +158,12 @@ void assay_flip_tile(const assay_flip_job *job, const assay_tile *tile, double e
             filter_down(&job->kernels, tile, (size_t)y + h.radius, p.along[i], p.down[i]);
         }
         for (int x = 0; x < tile->width; x++) {
-            const double color =
-                assay_flip_color_difference(&job->colors, filtered(&job->kernels, p.down[0], x),
-                                            filtered(&job->kernels, p.down[1], x));
-            const double feature                 = feature_difference(p.down[0], p.down[1], x);
-            errors_out[y * ASSAY_TILE_WIDTH + x] = (float)combine(color, feature);
+            const double distance =
+                assay_flip_color_distance(&job->colors, filtered(&job->kernels, p.down[0], x),
+                                          filtered(&job->kernels, p.down[1], x));
+            const double feature = feature_difference(p.down[0], p.down[1], x);
+            errors_out[y * ASSAY_TILE_WIDTH + x] =
+                (float)assay_flip_error(&job->colors, distance, feature);
         }
     }
 }

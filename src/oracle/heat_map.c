@@ -72,7 +72,23 @@ static double pixel_error(const channel_pairs *list, size_t pixel)
     return sum / (double)list->count;
 }
 
-static assay_status draw(const channel_pairs *list, double full_scale, assay_image *map)
+/* Where the errors of a map go: one channel as they are, or three as colours. */
+typedef assay_status (*error_writer)(const channel_pairs *list, double full_scale,
+                                     assay_image *map);
+
+static assay_status write_numbers(const channel_pairs *list, double full_scale, assay_image *map)
+{
+    assay_channel      out;
+    const assay_status status =
+        assay_image_add_channel(map, "RelativeError", ASSAY_CHANNEL_FLOAT, &out);
+    (void)full_scale;
+    for (size_t i = 0; status == ASSAY_OK && i < assay_image_pixels(map); i++) {
+        out.data.f32[i] = (float)pixel_error(list, i);
+    }
+    return status;
+}
+
+static assay_status write_colors(const channel_pairs *list, double full_scale, assay_image *map)
 {
     static const char *const names[3] = {"R", "G", "B"};
     assay_channel            out[3];
@@ -92,16 +108,11 @@ static assay_status draw(const channel_pairs *list, double full_scale, assay_ima
     return ASSAY_OK;
 }
 
-assay_status assay_image_heat_map(const assay_image *a, const assay_image *b, double full_scale,
-                                  assay_image **map_out)
+static assay_status make_map(const assay_image *a, const assay_image *b, error_writer writer,
+                             double full_scale, assay_image **map_out)
 {
     assay_context *context = assay_image_context(a);
-    if (!(full_scale > 0.0) || isinf(full_scale)) {
-        return assay_fail(context, ASSAY_ERR_ARGUMENT,
-                          "the full scale of a heat map is %g; it must be finite and > 0",
-                          full_scale);
-    }
-    assay_status status = assay_images_check_sizes(a, b);
+    assay_status   status  = assay_images_check_sizes(a, b);
     if (status != ASSAY_OK) {
         return status;
     }
@@ -112,7 +123,7 @@ assay_status assay_image_heat_map(const assay_image *a, const assay_image *b, do
         status = assay_image_create(context, assay_image_width(a), assay_image_height(a), &map);
     }
     if (status == ASSAY_OK) {
-        status = draw(&list, full_scale, map);
+        status = writer(&list, full_scale, map);
     }
     assay_release(context, list.pairs);
     assay_release(context, list.floors);
@@ -122,4 +133,21 @@ assay_status assay_image_heat_map(const assay_image *a, const assay_image *b, do
     }
     *map_out = map;
     return ASSAY_OK;
+}
+
+assay_status assay_image_relative_error(const assay_image *a, const assay_image *b,
+                                        assay_image **map_out)
+{
+    return make_map(a, b, write_numbers, 1.0, map_out);
+}
+
+assay_status assay_image_heat_map(const assay_image *a, const assay_image *b, double full_scale,
+                                  assay_image **map_out)
+{
+    if (!(full_scale > 0.0) || isinf(full_scale)) {
+        return assay_fail(assay_image_context(a), ASSAY_ERR_ARGUMENT,
+                          "the full scale of a heat map is %g; it must be finite and > 0",
+                          full_scale);
+    }
+    return make_map(a, b, write_colors, full_scale, map_out);
 }

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "assay/compare.h"
 #include "core/context.h"
 #include "io/image_access.h"
 
@@ -23,30 +24,53 @@ void assay_layer_channel(const char *layer, int c, char name[ASSAY_LAYER_NAME])
     snprintf(name, ASSAY_LAYER_NAME, "%.255s%s%c", layer, layer[0] ? "." : "", "RGB"[c]);
 }
 
+/* `whose` begins the message: "the reference's ", or nothing. */
+static assay_status check_channel(const assay_image *image, const assay_channel *channel,
+                                  const char *whose)
+{
+    const size_t width = (size_t)assay_image_width(image);
+    for (size_t i = 0; i < assay_image_pixels(image); i++) {
+        const float value = channel->data.f32[i];
+        if (!isfinite(value)) {
+            return assay_fail(assay_image_context(image), ASSAY_ERR_DOMAIN,
+                              "%schannel \"%s\" is %s at pixel (%zu, %zu)", whose, channel->name,
+                              isnan(value) ? "NaN" : "infinite", i % width, i / width);
+        }
+    }
+    return ASSAY_OK;
+}
+
+assay_status assay_image_check_finite(const assay_image *image)
+{
+    assay_status status = ASSAY_OK;
+    for (int i = 0; i < assay_image_channel_count(image) && status == ASSAY_OK; i++) {
+        const assay_channel channel = assay_image_channel_at(image, i);
+        if (channel.type == ASSAY_CHANNEL_FLOAT) {
+            status = check_channel(image, &channel, "");
+        }
+    }
+    return status;
+}
+
 /* One image's three channels. */
-static assay_status open_layer(assay_context *context, const assay_image *image, const char *who,
+static assay_status open_layer(assay_context *context, const assay_image *image, const char *whose,
                                const char *layer, const float *values_out[3])
 {
-    const size_t pixels = assay_image_pixels(image), width = (size_t)assay_image_width(image);
     for (int c = 0; c < 3; c++) {
         char          name[ASSAY_LAYER_NAME];
         assay_channel channel;
         assay_layer_channel(layer, c, name);
         if (!assay_image_find_channel(image, name, &channel)) {
-            return assay_fail(context, ASSAY_ERR_ARGUMENT, "the %s has no channel \"%s\"", who,
+            return assay_fail(context, ASSAY_ERR_ARGUMENT, "%schannel \"%s\" is missing", whose,
                               name);
         }
         if (channel.type != ASSAY_CHANNEL_FLOAT) {
             return assay_fail(context, ASSAY_ERR_ARGUMENT,
-                              "the %s's channel \"%s\" holds whole numbers, not light", who, name);
+                              "%schannel \"%s\" holds whole numbers, not light", whose, name);
         }
-        for (size_t i = 0; i < pixels; i++) {
-            if (!isfinite(channel.data.f32[i])) {
-                return assay_fail(context, ASSAY_ERR_DOMAIN,
-                                  "the %s's channel \"%s\" is %s at pixel (%zu, %zu)", who, name,
-                                  isnan(channel.data.f32[i]) ? "NaN" : "infinite", i % width,
-                                  i / width);
-            }
+        const assay_status status = check_channel(image, &channel, whose);
+        if (status != ASSAY_OK) {
+            return status;
         }
         values_out[c] = channel.data.f32;
     }
@@ -61,10 +85,10 @@ assay_status assay_picture_pair_open(const assay_image *a, const assay_image *b,
                                  .height  = assay_image_height(a)};
     assay_status       status = assay_images_check_sizes(a, b);
     if (status == ASSAY_OK) {
-        status = open_layer(pair.context, a, "reference", layer, pair.a);
+        status = open_layer(pair.context, a, "the reference's ", layer, pair.a);
     }
     if (status == ASSAY_OK) {
-        status = open_layer(pair.context, b, "candidate", layer, pair.b);
+        status = open_layer(pair.context, b, "the candidate's ", layer, pair.b);
     }
     if (status == ASSAY_OK) {
         *pair_out = pair;
