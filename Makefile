@@ -134,9 +134,6 @@ mutants: deps-test ## break the source on purpose, also where `make test` does n
 $(BUILD)/tests/bench/%: $(BUILD)/tests/bench/%.o $(BUILD)/libassay.a
 	$(CXX) $(LDFLAGS) $^ $(LDLIBS) -o $@
 
-$(BUILD)/tests/tables/%: $(BUILD)/tests/tables/%.o $(BUILD)/libassay.a
-	$(CXX) $(LDFLAGS) $^ $(LDLIBS) -o $@
-
 $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/libassay.a
 	$(CXX) $(LDFLAGS) $(FUZZ_LINK) $^ $(LDLIBS) -o $@
 
@@ -155,7 +152,7 @@ bench: ## ratios measured inside one run
 	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(BENCHES)
 	@for b in $(BENCHES); do echo "== $${b##*/}"; $$b || exit 1; done
 
-tables: ## the tables of docs/methods that take minutes
+tables: deps-test ## the tables of docs that take minutes
 	@$(MAKE) --no-print-directory -s -j$$(nproc) $(TABLES)
 	@for t in $(TABLES); do $$t || exit 1; done
 

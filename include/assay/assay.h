@@ -16,5 +16,6 @@
 #include "assay/status.h"
 #include "assay/types.h"
 #include "assay/verdict.h"
+#include "assay/verify.h"
 
 #endif

@@ -206,6 +206,9 @@ static void add_annotation(assay_text_builder *text, const assay_verdict *v, con
 assay_status assay_verdict_annotations(const assay_verdict *verdict, char **text_out)
 {
     assay_text_builder text = assay_text_start(verdict->context);
+    if (verdict->count == 0) {
+        assay_text_add(&text, "::warning title=verify::nothing was tested\n");
+    }
     for (size_t i = 0; i < verdict->count; i++) {
         if (verdict->findings[i].kind != ASSAY_VERDICT_PASS) {
             add_annotation(&text, verdict, &verdict->findings[i]);

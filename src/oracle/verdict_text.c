@@ -94,13 +94,16 @@ static void add_head(assay_text_builder *text, const assay_verdict *verdict)
     const size_t unsure = count_kind(verdict, ASSAY_VERDICT_CANNOT_TELL);
     switch (assay_verdict_whole(verdict)) {
     case ASSAY_VERDICT_PASS:
-        assay_text_add(text, "PASS: %s agrees with %s in all of %zu tests.", verdict->candidate,
+        assay_text_add(text, "PASS: %s against %s: no difference in %zu tests.", verdict->candidate,
                        verdict->reference, verdict->count);
         break;
     case ASSAY_VERDICT_FAIL:
         assay_text_add(text, "FAIL: %s differs from %s in %zu of %zu tests", verdict->candidate,
                        verdict->reference, failed, verdict->count);
-        assay_text_add(text, unsure ? "; %zu more cannot tell." : ".", unsure);
+        if (unsure > 0) {
+            assay_text_add(text, "; %zu more cannot tell", unsure);
+        }
+        assay_text_add_char(text, '.');
         break;
     case ASSAY_VERDICT_CANNOT_TELL:
         assay_text_add(text, "CANNOT TELL whether %s agrees with %s: %zu of %zu tests cannot.",
@@ -109,8 +112,7 @@ static void add_head(assay_text_builder *text, const assay_verdict *verdict)
     }
 }
 
-/* The smallest relative bias that the whole of an image would have shown is what a pass is worth.
- */
+/* What a pass is worth. */
 static void add_worth(assay_text_builder *text, const assay_verdict *verdict)
 {
     const char *worth = assay_verdict_get(verdict, "power");
