@@ -16,7 +16,7 @@ SAN     ?=
 DEPS_BUILD := gcc g++ make libembree-dev libopenexr-dev libtinygltf-dev libsleef-dev \
               librandom123-dev libpng-dev zlib1g-dev libjpeg-dev libcjson-dev \
               libmd-dev
-DEPS_TEST  := libcmocka-dev clang chromium
+DEPS_TEST  := libcmocka-dev clang chromium python3-numpy
 DEPS_LINT  := clang-format clang-tidy cppcheck
 DEPS_REF   := libflint-arb-dev libflint-dev libmpfr-dev
 

@@ -6,6 +6,7 @@
 #define ASSAY_REPLAY_H
 
 #include "assay/params.h"
+#include "assay/precision.h"
 #include "assay/scene.h"
 #include "assay/verdict.h"
 
@@ -17,7 +18,8 @@ extern "C" {
 typedef struct {
     const char *name;     /* "records/position"; '#' in it stands for a whole number; NULL ends a
                              table                                                            */
-    const char *unit;     /* as the manifest has it; "" where it has none                     */
+    const char *unit;     /* as the manifest has it; "" where it has none; NULL: any, and an output
+                             has that of the first such input                                    */
     const char *channels; /* "X Y Z": of an image, and how many columns a table has; NULL: any */
     const char *rows;     /* "record": what a row is, in words                                */
     const char *what;     /* in words                                                         */
@@ -36,19 +38,13 @@ typedef struct {
 ASSAY_API int              assay_stage_count(void);
 ASSAY_API assay_stage_info assay_stage_at(int index);
 
-/* What a candidate computes with: IEEE 754 binary16, binary32, binary64. */
-typedef enum { ASSAY_PRECISION_HALF, ASSAY_PRECISION_FLOAT, ASSAY_PRECISION_DOUBLE } assay_precision;
-
-/* "half", "float", "double".  Errors: ARGUMENT. */
-ASSAY_API assay_status assay_precision_find(const char *name, assay_precision *precision_out);
-
 typedef struct {
     const char            *stage;
-    const char            *in, *out;  /* bundles; out is made                                 */
-    const assay_scene     *scene;     /* NULL without                                         */
-    const assay_precision *bounds;    /* adds NAME_bound for each array NAME; NULL: none      */
+    const char            *in, *out; /* bundles; out is made                                 */
+    const assay_scene     *scene;    /* NULL without                                         */
+    const assay_precision *bounds;   /* adds NAME_bound for each array NAME; NULL: none      */
     int                    param_count;
-    const char *const     *params;    /* "key=value", before what the manifest says           */
+    const char *const     *params; /* "key=value", before what the manifest says           */
 } assay_replay_options;
 
 /* Errors: ARGUMENT (no such stage or parameter; a scene is missing), NOT_FOUND, FORMAT, DOMAIN,
@@ -59,7 +55,7 @@ ASSAY_API assay_status assay_replay(assay_context *context, const assay_replay_o
  * adds a finding for each array.  Errors: ARGUMENT (candidate and reference are of other scenes,
  * parameters, cameras: the message names what), FORMAT (an array that the reference lacks, of
  * another shape, dtype or unit; a broken file), DOMAIN (NaN), and the others of assay_replay; the
- * verdict is then as it was. */
+ * verdict is then worthless.  Arrays that no stage judges stand in its setting "not judged". */
 ASSAY_API assay_status assay_verify_bundle(assay_context *context, const char *candidate,
                                            const char *reference, const assay_scene *scene,
                                            assay_precision precision, assay_verdict *verdict);

@@ -7,6 +7,7 @@
 #define ASSAY_VERIFY_H
 
 #include "assay/image.h"
+#include "assay/precision.h"
 #include "assay/verdict.h"
 
 #ifdef __cplusplus
@@ -18,8 +19,6 @@ typedef enum {
     ASSAY_CORRECTION_BH    /* Benjamini and Hochberg: of the pixels named, a share of `level`
                               may be false; finds more of them                              */
 } assay_correction;
-
-typedef enum { ASSAY_PRECISION_FLOAT, ASSAY_PRECISION_HALF } assay_precision;
 
 /* Largest number of runs of a candidate. */
 #define ASSAY_VERIFY_MAX_RUNS 64
@@ -39,7 +38,7 @@ typedef struct {
     uint32_t        candidate_samples; /* of a pixel, where SampleCount does not say; 0: unknown */
     uint32_t        reference_samples;
     bool            reference_exact; /* the reference has no noise                             */
-    assay_precision precision;       /* of the candidate's arithmetic and file                 */
+    assay_precision precision;       /* of the candidate's arithmetic; a file holds floats     */
     const char     *channels;        /* "R,G,B"; NULL: all that both have, of those that
                                         docs/conventions.md lists as estimated                 */
     bool ignore_metadata;            /* compare also where scene or camera differ              */

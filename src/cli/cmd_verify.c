@@ -5,6 +5,7 @@
 #include "console.h"
 #include "options.h"
 #include "output_check.h"
+#include "verify_bundles.h"
 
 typedef struct {
     const char          *candidates[ASSAY_VERIFY_MAX_RUNS];
@@ -15,6 +16,7 @@ typedef struct {
     uint64_t             memory_limit;
     bool                 annotations, list, quiet, help;
     long                 threads;
+    cli_bundle_request   bundles;
 } verify_request;
 
 enum {
@@ -40,7 +42,10 @@ enum {
     OPT_THREADS,
     OPT_MEMORY,
     OPT_QUIET,
-    OPT_HELP
+    OPT_HELP,
+    OPT_SCENE,
+    OPT_TIME,
+    OPT_SCENE_OPTIONS
 };
 static const cli_option OPTIONS[] = {
     {"reference", 0, "REF.exr", "what is right: an image with variances; required"},
@@ -56,7 +61,7 @@ static const cli_option OPTIONS[] = {
     {"samples", 0, "N", "of a candidate's pixel (default: its SampleCount)"},
     {"reference-samples", 0, "N", "of a reference's pixel (default: its SampleCount)"},
     {"reference-exact", 0, NULL, "the reference has no noise"},
-    {"precision", 0, "P", "of the candidate: float (default) or half"},
+    {"precision", 0, "P", "of the candidate: half, float (default) or double"},
     {"ignore-metadata", 0, NULL, "compare also where scene or camera are said to differ"},
     {"json", 0, "F.json", "write the verdict as JSON; - is standard output"},
     {"junit", 0, "F.xml", "write the verdict as JUnit XML"},
@@ -66,6 +71,9 @@ static const cli_option OPTIONS[] = {
     CLI_MEMORY_OPTION,
     {"quiet", 'q', NULL, "no progress, no warnings, no paragraph"},
     {"help", 'h', NULL, "this text"},
+    {"scene", 0, "F.gltf", "bundles: judges the stages that look at a scene, too"},
+    {"time", 0, "T", "seconds into the scene's animations (default 0)"},
+    CLI_SCENE_OPTIONS,
     {0}};
 
 static const char *read_positive(const char *value, double *out)
@@ -118,12 +126,7 @@ static const char *read_correction(const char *value, assay_correction *out)
 
 static const char *read_precision(const char *value, assay_precision *out)
 {
-    const int index = word(value, "float", "half");
-    if (index < 0) {
-        return "takes float or half";
-    }
-    *out = index == 0 ? ASSAY_PRECISION_FLOAT : ASSAY_PRECISION_HALF;
-    return NULL;
+    return assay_precision_find(value, out) ? "takes half, float or double" : NULL;
 }
 
 static const char *add_candidate(verify_request *r, const char *value)
@@ -151,8 +154,16 @@ static const char *take_output(verify_request *r, int index, const char *value)
     case OPT_MEMORY: return cli_read_bytes(value, &r->memory_limit);
     case OPT_QUIET: r->quiet = true; return NULL;
     case OPT_HELP: r->help = true; return NULL;
-    default: return add_candidate(r, value);
+    case OPT_SCENE: r->bundles.scene = value; return NULL;
+    case OPT_TIME: return cli_read_real(value, &r->bundles.time);
+    default: break;
     }
+    if (index >= OPT_SCENE_OPTIONS) {
+        const char *problem = NULL;
+        cli_scene_option(&r->bundles.options, OPTIONS[index].name, value, &problem);
+        return problem;
+    }
+    return add_candidate(r, value);
 }
 
 static const char *take(void *user, int index, const char *value)
@@ -187,6 +198,10 @@ static const char *check_together(const verify_request *r)
     }
     if (!r->reference) {
         return "--reference is missing";
+    }
+    const char *problem = cli_bundle_check(&r->bundles, r->count, r->candidates[0]);
+    if (problem) {
+        return problem;
     }
     const bool allow = r->options.allow > 0.0 || r->options.allow_absolute > 0.0;
     if (allow && (r->options.detect > 0.0 || r->options.detect_tile > 0.0)) {
@@ -269,8 +284,11 @@ static int verify(const verify_request *r)
         return assay_status_exit_code(ASSAY_ERR_MEMORY);
     }
     assay_verdict *verdict = NULL;
-    assay_status   status =
-        assay_verify_files(context, r->candidates, r->count, r->reference, &r->options, &verdict);
+    const bool     bundle  = cli_is_bundle(r->candidates[0]);
+    assay_status   status  = bundle ? cli_verify_bundle(context, r->candidates[0], r->reference,
+                                                        &r->bundles, r->options.precision, &verdict)
+                                    : assay_verify_files(context, r->candidates, r->count,
+                                                         r->reference, &r->options, &verdict);
     if (status == ASSAY_OK) {
         status = report(&console, context, r, verdict);
     }
@@ -283,13 +301,16 @@ static int verify(const verify_request *r)
 
 int cli_verify(int count, char **argv)
 {
-    verify_request request = {.options = assay_verify_options_default()};
+    verify_request request = {.options = assay_verify_options_default(),
+                              .bundles = {.options = cli_scene_request_default()}};
     if (!cli_parse("verify", count, argv, OPTIONS, take, NULL, &request)) {
         return CLI_EXIT_USAGE;
     }
     if (request.help) {
         printf("usage: assay verify CANDIDATE.exr [MORE.exr ...] --reference REF.exr [options]\n"
+               "       assay verify BUNDLE --reference BUNDLE [--scene F.gltf] [--precision P]\n"
                "Is it the same light? Several candidates are runs of one renderer.\n"
+               "Of a bundle: which stage is the first that does not follow from its inputs?\n"
                "Exit code 0: passes; 1: fails; 2: cannot tell, or bad input.\n");
         cli_print_options(OPTIONS);
         return 0;

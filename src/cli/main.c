@@ -16,6 +16,7 @@ static const struct {
     {"scene", cli_scene, "tell what a glTF scene holds, and what of it is not supported"},
     {"methods", cli_methods, "list the methods, their parameters, ranges and sources"},
     {"diff", cli_diff, "compare two OpenEXR images"},
+    {"replay", cli_replay, "run one stage on given arrays: what should have come out of yours?"},
     {"verify", cli_verify, "say whether images are the same light as a reference, and how sure"},
     {"report", cli_report, "one HTML page: pictures, differences, stages, records, parameters"},
     {"basis", cli_basis, "SH, HSH and other bases: values, projections, rotations, pictures"},
@@ -58,11 +59,8 @@ static int run_command(int argc, char **argv)
             return COMMANDS[i].run(argc - 2, argv + 2);
         }
     }
-    cli_complain(
-        name,
-        "unknown command or option; the commands are render, scene, methods, diff, verify, basis");
-    cli_complain(name,
-                 "unknown command or option; the commands are render, scene, methods, diff, report, basis");
+    cli_complain(name, "unknown command or option; the commands are render, scene, methods, diff, "
+                       "verify, replay, report, basis");
     return CLI_EXIT_USAGE;
 }
 

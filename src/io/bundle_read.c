@@ -121,6 +121,11 @@ bool assay_bundle_lists(const assay_bundle_reader *reader, const char *name)
     return listed_digest(reader, name) != NULL;
 }
 
+bool assay_bundle_has(const assay_bundle_reader *reader, const char *name)
+{
+    return find_entry(reader, name) != NULL;
+}
+
 int assay_bundle_text_count(const assay_bundle_reader *reader)
 {
     return cJSON_GetArraySize(reader->manifest);
@@ -214,10 +219,9 @@ static assay_status read_bytes(const assay_bundle_reader *reader, const char *na
                                const char *path, const char *listed, uint8_t **bytes_out,
                                size_t *count_out)
 {
-    uint8_t     *bytes = NULL;
-    size_t       count = 0;
-    assay_status status =
-        assay_read_file(reader->context, path, (uint64_t)1 << 40, &bytes, &count);
+    uint8_t     *bytes  = NULL;
+    size_t       count  = 0;
+    assay_status status = assay_read_file(reader->context, path, (uint64_t)1 << 40, &bytes, &count);
     if (status != ASSAY_OK) {
         return status;
     }
@@ -318,23 +322,34 @@ static assay_status read_listed_npy(const assay_bundle_reader *reader,
     return ASSAY_OK;
 }
 
+static bool find_channel(const assay_image *image, const char *channels, size_t column,
+                         assay_channel *channel_out)
+{
+    char name[ASSAY_BUNDLE_NAME];
+    if (!channels) {
+        *channel_out = assay_image_channel_at(image, (int)column);
+        return true;
+    }
+    for (; column > 0; column--) {
+        channels += strcspn(channels, " ");
+        channels += *channels == ' ';
+    }
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(channels, " "), channels);
+    return assay_image_find_channel(image, name, channel_out);
+}
+
 /* Channel by channel into the columns of a row a pixel. */
 static assay_status take_channels(const assay_bundle_reader *reader,
                                   const assay_bundle_entry *entry, const assay_image *image,
                                   const char *channels, assay_array *table)
 {
     const size_t pixels = assay_array_rows(table), columns = assay_array_columns(table);
-    const char  *rest   = channels;
     for (size_t c = 0; c < columns; c++) {
-        char          name[ASSAY_BUNDLE_NAME];
         assay_channel channel;
-        const size_t  length = strcspn(rest, " ");
-        snprintf(name, sizeof name, "%.*s", (int)length, rest);
-        rest += length + (rest[length] == ' ');
-        if (!assay_image_find_channel(image, name, &channel)) {
+        if (!find_channel(image, channels, c, &channel)) {
             return assay_fail(reader->context, ASSAY_ERR_FORMAT,
-                              "%s: bundle: the image of '%s' has no channel %s", reader->folder,
-                              entry->name, name);
+                              "%s: bundle: the image of '%s' has not the channels %s",
+                              reader->folder, entry->name, channels);
         }
         const bool whole = channel.type == ASSAY_CHANNEL_UINT;
         if (strcmp(entry->dtype, whole ? "uint32" : "float32") != 0) {
@@ -378,7 +393,7 @@ static assay_status read_listed_image(const assay_bundle_reader *reader,
         const size_t depth  = (size_t)assay_image_channel_count(image);
         const bool   fits   = entry->dimensions == 3 && entry->shape[0] == height &&
                           entry->shape[1] == width && entry->shape[2] == depth &&
-                          depth == words_in(channels);
+                          (!channels || depth == words_in(channels));
         status = fits ? assay_array_create(reader->context, height * width, depth, &table)
                       : fail_entry(reader, entry, "shape");
     }
