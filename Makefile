@@ -108,16 +108,27 @@ MUTANT_ENV = BUILD=$(BUILD) \
    MUTANT_LIBS="$(HELP_O) $(filter-out %/main.o,$(GEN_O)) $(BUILD)/libassay.a -lcmocka $(LDLIBS)"
 
 DEMO := build/demo
-demo: deps ## build, render our Cornell box, write EXR and PNG
+demo: deps ## render our Cornell box two ways, verify one against the other, write a report
 	@$(MAKE) --no-print-directory -s -j$$(nproc) all
-	@mkdir -p $(DEMO)
-	@$(BUILD)/assay render scenes/cornell-box/cornell-box.gltf --method path --size 400x400 \
-	   --spp 64 --exposure 1 -o $(DEMO)/cornell-box.exr --png $(DEMO)/cornell-box.png \
-	   --stats $(DEMO)/cornell-box.json
-	@echo "The Cornell box, path traced with 64 samples a pixel and all bounces:"
+	@rm -rf $(DEMO); mkdir -p $(DEMO)/cache
+	@set -e; draw() { $(BUILD)/assay render scenes/cornell-box/cornell-box.gltf --size 256x256 \
+	     --layers color,gbuffer "$$@"; }; \
+	 draw --method path --spp 64 -o $(DEMO)/cornell-box.exr --stats $(DEMO)/cornell-box.json \
+	   --png $(DEMO)/cornell-box.png --exposure 1; \
+	 for n in 4 16; do draw --method path --spp $$n --seed $$n -o $(DEMO)/path-$$n.exr \
+	   --stats $(DEMO)/path-$$n.json; done; \
+	 draw --method irradiance-cache --spp 16 --a 0.25 --theta-strata 10 --phi-strata 32 \
+	   --dump $(DEMO)/cache/irradiance-cache -o $(DEMO)/cache/irradiance-cache.exr \
+	   --stats $(DEMO)/cache/irradiance-cache.json
+	@echo "Is the cache's image the path tracer's, within 10 percent in every 64 x 64 pixels?"
+	@$(BUILD)/assay verify $(DEMO)/cache/irradiance-cache.exr --reference $(DEMO)/cornell-box.exr \
+	   --allow 0.1 --tile 64 --json $(DEMO)/cache/irradiance-cache.verdict.json || [ $$? -le 2 ]
+	@$(BUILD)/assay report $(DEMO)/cache/irradiance-cache $(DEMO)/path-4.exr $(DEMO)/path-16.exr \
+	   --reference $(DEMO)/cornell-box.exr -o $(DEMO)/report.html
 	@echo "  $(DEMO)/cornell-box.png   to look at"
-	@echo "  $(DEMO)/cornell-box.exr   linear radiance, variance, G-buffer, irradiance: all layers"
-	@echo "  $(DEMO)/cornell-box.json  rays, seconds, memory"
+	@echo "  $(DEMO)/cornell-box.exr   linear radiance, variance, G-buffer: all layers"
+	@echo "  $(DEMO)/cache             the same by irradiance caching, with its records"
+	@echo "  $(DEMO)/report.html       both side by side, where they differ, and why: open it in a browser"
 	@echo "Next: $(BUILD)/assay render --help"
 
 test: deps-test ## build and run all tests

@@ -128,7 +128,7 @@ static void leave_out_reference(assay_context *context, assay_report_list *list)
 {
     size_t kept = 0;
     for (size_t i = 0; i < list->count; i++) {
-        if (list->count > 1 && same_file(list->candidates[i], list->reference)) {
+        if (list->reference && list->count > 1 && same_file(list->candidates[i], list->reference)) {
             assay_release(context, list->candidates[i]);
         } else {
             list->candidates[kept++] = list->candidates[i];
@@ -142,9 +142,10 @@ assay_status assay_report_list_make(assay_context *context, const assay_report_o
 {
     assay_report_list list = {
         .candidates = assay_allocate(context, ASSAY_REPORT_MAX_CANDIDATES, sizeof(char *))};
-    assay_status status =
-        list.candidates ? ASSAY_OK : assay_fail_memory(context, "a list of images");
-    status = status ? status : add_all(context, options, &list);
+    if (!list.candidates) {
+        return assay_fail_memory(context, "a list of images");
+    }
+    assay_status status = add_all(context, options, &list);
     if (status == ASSAY_OK && options->reference) {
         list.reference = assay_copy_text(context, options->reference);
         status         = list.reference ? ASSAY_OK : assay_fail_memory(context, "a name");

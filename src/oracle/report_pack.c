@@ -220,7 +220,7 @@ assay_status assay_report_pack_create(assay_context *context, int width, int hei
         pack.bytes = assay_allocate(context, pack.count, 1);
         status     = pack.bytes ? ASSAY_OK : assay_fail_memory(context, "a packed picture");
     }
-    if (status == ASSAY_OK) {
+    if (status == ASSAY_OK && pack.bytes && work.packed) {
         memcpy(pack.bytes, work.packed, pack.count);
         *pack_out = pack;
     }

@@ -48,7 +48,7 @@ static double usual_maximum(const float *values, size_t pixels)
     for (size_t i = 0; i < pixels; i++) {
         int exponent = -MIDDLE;
         if (isfinite(values[i]) && values[i] != 0.0F) {
-            frexp(values[i], &exponent);
+            frexp((double)values[i], &exponent);
         }
         count[MIDDLE + exponent]++;
     }

@@ -185,6 +185,7 @@ static assay_status write_page(report *r, const assay_report_options *options, c
     }
     r->writer.text = &text;
     status         = put_page(r, options);
+    r->writer.text = NULL;
     if (status != ASSAY_OK) {
         assay_atomic_file_discard(text.file);
         return status;
