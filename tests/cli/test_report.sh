@@ -67,6 +67,9 @@ accepts "a folder: the path with the most samples is the reference" report "$wor
     --title '</title><script>hacked=1</script>"&'
 accepts "a bundle against an image, with a verdict" report "$work/dir/cache" --reference "$truth" \
     --verdict "$work/verdict.json" -o "$work/pair.html" -q
+sed 's/"fail"/"pass"/g; s/"first":1/"first":null/' "$work/verdict.json" > "$work/pass.json"
+accepts "a verdict that passes" report "$work/dir/cache" --reference "$truth" --verdict "$work/pass.json" \
+    -o "$work/pass.html" -q
 accepts "an image against itself" report "$truth" --reference "$truth" -o "$work/same.html" -q
 "$assay" report "$work/dir/cache" --reference "$truth" --verdict "$work/verdict.json" -o "$work/again.html" -q
 cmp -s "$work/pair.html" "$work/again.html"
@@ -94,7 +97,8 @@ browse() { # EXPECTED: pages
       for page in "$folder"/pages/*.html; do
           echo "<iframe src=\"pages/${page##*/}\" width=\"1200\" height=\"900\"></iframe>"
       done; } > "$folder/frames.html"
-    timeout -k 5 90 chromium --headless --no-sandbox --disable-gpu --no-first-run --enable-logging=stderr \
+    : > "$folder/console"
+    timeout -k 5 150 chromium --headless --no-sandbox --disable-gpu --no-first-run --enable-logging=stderr \
         --disable-extensions --disable-background-timer-throttling --disable-renderer-backgrounding \
         --disable-backgrounding-occluded-windows --window-size=1280,960 --user-data-dir="$folder/profile" --remote-debugging-port=0 "file://$folder/frames.html" \
         > "$folder/console" 2>&1 &
@@ -107,11 +111,11 @@ browse() { # EXPECTED: pages
 }
 
 mkdir "$folder/pages"
-for page in all pair same; do
+for page in all pair pass same; do
     inject "$work/$page.html" "$folder/pages/$page.html" -e ''
 done
-browse 3
-for page in all pair; do
+browse 4
+for page in all pair pass; do
     grep -q "SELFTEST $page.html passes" "$folder/console"
     code=$?
     [ $code -eq 0 ] || grep "SELFTEST $page.html" "$folder/console" | sed 's/^/# /'
@@ -149,6 +153,7 @@ pair|s/^    if (state.records) drawRecords.*//
 all|s/chooseCandidate(state.candidate + 1)/0/
 pair|s/href: `#finding-\${verdict.first}`/href: "#finding-0"/
 pair|s/^  \$("scale-value").textContent/  throw 1; &/
+pass|s/: null\].filter(Boolean));/: null]);/
 all|s/<body>/<body><img src="https:\/\/example.org\/x.png" alt="">/
 TABLE
 browse $count

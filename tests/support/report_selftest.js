@@ -38,6 +38,8 @@
   function texts() {
     check(isName($("title").textContent) && document.title === `${$("title").textContent} - assay report`, "the title is the title");
     check(all("h1 *, #subtitle *, .thumb-name > :not(kbd), td script, td img, th img").length === 0, "no text became an element");
+    check(all("main *, header *").every((element) => ![...element.childNodes].some((node) =>
+      node.nodeType === 3 && /\b(null|undefined|NaN|\[object)/.test(node.data))), "nothing that is missing is written out");
     check(globalThis.hacked === undefined, "no text was run");
     const ids = all("[id]").map((element) => element.id);
     check(new Set(ids).size === ids.length, "every id is there once");

@@ -17,11 +17,11 @@ function buildVerdict() {
   if (!verdict) return;
   const first = verdict.findings[verdict.first], kind = (KINDS[verdict.verdict] ?? KINDS["cannot tell"])[0];
   section.className = kind;
-  section.replaceChildren(
+  section.replaceChildren(...[
     make("h2", { id: "verdict-heading" }, pill(verdict.verdict), " ", shown().name),
     make("p", {}, verdict.summary ?? ""),
     first ? make("p", { className: "links" }, make("a", { href: `#finding-${verdict.first}` },
-      `${verdict.verdict === "fail" ? "First failure" : "First doubt"}: ${first.stage}, ${first.array}`), placeButton(first)) : null);
+      `${verdict.verdict === "fail" ? "First failure" : "First doubt"}: ${first.stage}, ${first.array}`), placeButton(first)) : null].filter(Boolean));
 }
 
 /* A finding's place, as a button where it is in the image. */
