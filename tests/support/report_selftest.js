@@ -154,6 +154,18 @@
     all("input[name=mode]")[0].click();
   }
 
+  function charts() {
+    for (const svg of all("#histograms figure:not(:has(.nothing)) svg")) check(svg.querySelectorAll("rect, path").length > 1, "a histogram is drawn");
+    check(all("#histograms figure").length === 3, "three histograms");
+    if ($("convergence").hidden) return;
+    const before = $("curves").innerHTML;
+    check(all("#curves circle").length >= 2, "errors are drawn against cost");
+    const others = all("input[name=cost]:not(:checked)");
+    if (others.length === 0) return;
+    others[0].click();
+    check($("curves").innerHTML !== before, "against another cost they are elsewhere");
+  }
+
   async function theme() {
     const paper = () => getComputedStyle(document.body).backgroundColor;
     press("t");
@@ -210,7 +222,7 @@
   try {
     await started();
     await settled();
-    for (const step of [texts, names, divider, pictures, exposure, views, values, theme, records, candidates, verdict, help, parameters]) await step();
+    for (const step of [texts, names, charts, divider, pictures, exposure, views, values, theme, records, candidates, verdict, help, parameters]) await step();
   } catch (error) {
     wrong.push(String(error));
   }

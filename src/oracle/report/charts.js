@@ -101,8 +101,13 @@ function quantile(h, share) {
 
 const sayEqual = (h) => h.equal > 0 ? `${percent(h.equal / (3 * PIXELS), 2)} of all values are equal and not counted. ` : "";
 
+const nothing = (title, text, note) => figure(make("p", { className: "nothing" }, text), title, note);
+const allEqual = (h) => h.equal === 3 * PIXELS;
+
 function relativeChart(entry) {
-  const h = entry.relativeHistogram, span = range(h), ticks = [];
+  const h = entry.relativeHistogram;
+  if (allEqual(h)) return nothing("Relative error", "No value differs.", "");
+  const span = range(h), ticks = [];
   for (let e = Math.ceil(edge(h, span[0])); e <= edge(h, span[1]); e++) ticks.push([e, e >= -3 && e <= 2 ? `${+(10 ** (e + 2)).toPrecision(1)} %` : power("10", e)]);
   const chart = frame({ ...SIZE, x: [edge(h, span[0]), edge(h, span[1])], y: [0, highest(h)], xTicks: ticks,
     xLabel: "relative error of a channel", about: "Histogram of relative errors" });
@@ -118,10 +123,8 @@ function relativeChart(entry) {
 
 function zChart(entry) {
   const h = entry.zHistogram;
-  if (!h) {
-    return figure(make("p", { className: "nothing" }, "Neither image says how noisy it is (no Variance channels)."), "z-score",
-      "Where one does, this compares the difference with the noise.");
-  }
+  if (!h) return nothing("z-score", "Neither image says how noisy it is (no Variance channels).", "Where one does, this compares the difference with the noise.");
+  if (allEqual(h)) return nothing("z-score", "No value differs.", "");
   const span = [0, h.count.length], normal = (z) => h.step * Math.exp(-z * z / 2) / Math.sqrt(2 * Math.PI);
   const chart = frame({ ...SIZE, x: [edge(h, 0), edge(h, span[1])], y: [0, Math.max(highest(h), 1.08 * normal(0))],
     xTicks: [-6, -4, -2, 0, 2, 4, 6].map((z) => [z, format(z)]), xLabel: "difference in standard errors, σ", about: "Histogram of z-scores and the normal curve" });

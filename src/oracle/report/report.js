@@ -17,11 +17,14 @@ function showCandidate() {
 function buildConvergence() {
   const costs = Object.keys(COSTS).filter((cost) => new Set(pointsBy(cost).map((p) => p.x)).size > 1);
   $("convergence").hidden = costs.length === 0;
-  window.addEventListener("resize", drawConvergence);
+  window.addEventListener("resize", () => {
+    if (!matchMedia("print").matches) drawConvergence();
+  });
   if (costs.length === 0) return;
   const chosen = costs.includes("seconds") ? "seconds" : costs[0];
   $("costs").append(...costs.map((cost) => make("label", {}, make("input", { type: "radio", name: "cost", value: cost, checked: cost === chosen,
     onchange: drawConvergence }), make("span", {}, COSTS[cost].label))));
+  drawConvergence();
 }
 
 function drawConvergence() {

@@ -30,10 +30,20 @@ function startScales() {
   MAPS.difference.scale = shown().maps.difference.floor;
 }
 
+/* What paper must say, where no control tells it. */
+function sayOnPaper() {
+  const scales = Object.keys(shown().maps).map((name) => {
+    const map = MAPS[name], full = fullScale(name), unit = map.unit ? " " + map.unit : "";
+    return `${map.label} ${map.signed ? "±" : "0 to "}${map.percent ? percent(full) : format(full, 3) + unit}`;
+  });
+  $("paper").textContent = `Candidate: ${shown().name}. Exposure ${$("exposure-value").textContent}. Full scales: ${scales.join(", ")}.`;
+}
+
 /* ---- thumbnails ---- */
 
 let drawing = 0;
 async function drawThumbnails() {
+  sayOnPaper();
   const turn = ++drawing, whole = make("canvas", { width: WIDTH, height: HEIGHT });
   const data = whole.getContext("2d").createImageData(WIDTH, HEIGHT);
   for (const thumb of document.querySelectorAll("#pictures canvas")) {
