@@ -6,7 +6,7 @@
 #include "oracle/flip_kernels.h"
 #include "oracle/flip_tone.h"
 
-enum { ASSAY_TILE_WIDTH = 256, ASSAY_TILE_HEIGHT = 64 };
+enum { ASSAY_TILE_WIDTH = 128, ASSAY_TILE_HEIGHT = 128 };
 
 /* What all tiles share. */
 typedef struct {

@@ -25,4 +25,12 @@ void assay_filter_along(const assay_kernel *kernel, const double *in, size_t in_
 void assay_filter_down(const assay_kernel *kernel, const double *in, size_t in_stride, size_t width,
                        double *out);
 
+/* One row whose taps are `step` elements apart, by vectors of two and of four doubles; the second
+ * only where assay_filter_has_wide.  The same bits. */
+void assay_filter_row_pair(const assay_kernel *kernel, const double *in, ptrdiff_t step,
+                           size_t width, double *out);
+void assay_filter_row_wide(const assay_kernel *kernel, const double *in, ptrdiff_t step,
+                           size_t width, double *out);
+bool assay_filter_has_wide(void);
+
 #endif

@@ -98,12 +98,12 @@ static void two_colors(void **state)
         const double      *p     = PAIRS[i];
         const judge_color  first = {{p[0], p[1], p[2]}}, second = {{p[3], p[4], p[5]}};
         const double       expected = (double)judge_flip_constant(first, second);
-        assay_image       *a        = picture_constant(*state, 259, 67, p[0], p[1], p[2]);
-        assay_image       *b        = picture_constant(*state, 259, 67, p[3], p[4], p[5]);
+        assay_image       *a        = picture_constant(*state, 259, 131, p[0], p[1], p[2]);
+        assay_image       *b        = picture_constant(*state, 259, 131, p[3], p[4], p[5]);
         assay_flip_summary s;
         assay_image       *map = flip(a, b, ASSAY_FLIP_LDR, &options, &s);
         /* Rounding in the filters leaves features of 1e-16, of which the root is taken. */
-        for (int k = 0; k < 259 * 67; k++) {
+        for (int k = 0; k < 259 * 131; k++) {
             assert_near((double)picture_channel(map, "FLIP")[k], expected, 2e-7);
         }
         assert_near(s.mean, expected, 2e-7);
@@ -158,8 +158,8 @@ static void all_pixels_by_the_definition(void **state)
 /* Pixels beside the borders of tiles, at the default distance. */
 static void tiles_do_not_show(void **state)
 {
-    enum { WIDTH = 270, HEIGHT = 80 };
-    static const int            AT[][2] = {{255, 10}, {256, 63}, {257, 64}, {0, 64}, {269, 79}};
+    enum { WIDTH = 270, HEIGHT = 140 };
+    static const int            AT[][2] = {{127, 10}, {128, 127}, {257, 128}, {0, 128}, {269, 139}};
     const assay_metrics_options options = assay_metrics_defaults();
     assay_image                *a       = picture_random(*state, WIDTH, HEIGHT, 1.0, 4);
     assay_image                *b       = picture_random(*state, WIDTH, HEIGHT, 1.0, 5);
