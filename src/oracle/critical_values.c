@@ -12,8 +12,16 @@ assay_critical_values assay_critical_values_at(double log_p)
     return (assay_critical_values){.log_p = log_p};
 }
 
+assay_critical_values assay_critical_values_exact(double log_p)
+{
+    return (assay_critical_values){.log_p = log_p, .exact = true};
+}
+
 double assay_critical_value(assay_critical_values *values, double degrees)
 {
+    if (values->exact) {
+        return assay_student_quantile(values->log_p, degrees);
+    }
     double step = degrees >= 0x1p28
                       ? ASSAY_CRITICAL_STEPS - 1.0
                       : assay_floor(4.0 * (assay_log(degrees) / assay_log(2.0) + 1.0));

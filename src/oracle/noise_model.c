@@ -1,8 +1,8 @@
-/* noise_model.c - a variance that is not too small where it matters.
+/* noise_model.c - views of the variance, one of which is not too small where it matters.
  *
- * Invariant: each variance is an unbiased estimate, or one that is too large, where its assumption
- * holds; the largest is taken, so that neither the image that saw a rare event nor the one that
- * missed it makes a difference look surer than it is.
+ * Invariant: each is an unbiased estimate, or one that is too large, where its assumption holds; a
+ * test asks all of them, so that neither the image that saw a rare event nor the one that missed it
+ * makes a difference look surer than it is.
  *
  * Why that holds on both sides.  Of a sum of non-negative samples, the lower tail is no heavier
  * than that of a normal distribution with their second moment [maurer03]; so a mean that misses
@@ -149,38 +149,25 @@ void assay_noise_model_release(assay_noise_model *model)
 
 /* ---- asked ---- */
 
-static double degrees(double variance, double spread)
+/* Satterthwaite's degrees of freedom of a sum of estimated variances [satterthwaite46]. */
+static void add_view(assay_noise *noise, double variance, double spread)
 {
-    return spread > 0.0 ? variance * variance / spread : ASSAY_NORMAL;
-}
-
-static void take_larger(assay_noise *noise, double variance, double spread)
-{
-    if (variance > noise->variance) {
-        *noise = (assay_noise){variance, degrees(variance, spread)};
-    }
-}
-
-static assay_noise largest(const assay_noisy_sums *s)
-{
-    assay_noise noise = {0.0, ASSAY_NORMAL};
-    take_larger(&noise, s->candidate_variance + s->reference_variance,
-                s->candidate_spread + s->reference_spread);
-    take_larger(&noise, s->by_reference, s->by_reference_spread);
-    take_larger(&noise, s->by_candidate, s->by_candidate_spread);
-    return noise;
+    assay_noise_add(noise, variance, spread > 0.0 ? variance * variance / spread : ASSAY_NORMAL);
 }
 
 assay_noise assay_noise_of_region(const assay_noise_model *model, const assay_noisy_sums *sums,
                                   double design)
 {
-    assay_noise noise = largest(sums);
+    assay_noise noise = {0};
+    add_view(&noise, design * (sums->candidate_variance + sums->reference_variance),
+             design * design * (sums->candidate_spread + sums->reference_spread));
+    add_view(&noise, design * sums->by_reference, design * design * sums->by_reference_spread);
+    add_view(&noise, design * sums->by_candidate, design * design * sums->by_candidate_spread);
     if (model->alone) {
         /* Self-normalised: of symmetric noise the tail is below the normal one's bound [efron69].
          */
-        take_larger(&noise, sums->squares, 0.0);
+        assay_noise_add(&noise, design * sums->squares, ASSAY_NORMAL);
     }
-    noise.variance *= design;
     return noise;
 }
 
@@ -190,24 +177,31 @@ const assay_local_noise *assay_noise_near(const assay_noise_model *model, int x,
                          (size_t)(x / model->side)];
 }
 
-assay_noise assay_noise_of_pixel(const assay_noise_model *model, const assay_noisy_sums *sums,
-                                 int x, int y)
+/* Degrees of freedom of the sum of two variances that are at least those of the one with fewer
+ * [mickey66]: a single pixel's own estimate would err to the wrong side far out in the tail. */
+static double fewer_degrees(const assay_noisy_pair *pair, size_t pixel)
 {
-    const assay_local_noise *local = assay_noise_near(model, x, y);
-    assay_noisy_sums         s     = *sums;
-    fill_in(&s, local);
-    assay_noise noise = largest(&s);
-    take_larger(&noise, s.reference_variance + local->candidate, 0.0);
-    take_larger(&noise, s.candidate_variance + local->reference, 0.0);
-    return noise;
+    const double c =
+        pair->candidate.variance ? assay_noisy_degrees(&pair->candidate, pixel) : ASSAY_NORMAL;
+    const double r =
+        pair->reference.variance ? assay_noisy_degrees(&pair->reference, pixel) : ASSAY_NORMAL;
+    return fmin(c, r);
 }
 
-double assay_noise_t(const assay_noisy_sums *sums, assay_noise noise)
+assay_noise assay_noise_of_pixel(const assay_noise_model *model, const assay_noisy_pair *pair,
+                                 size_t pixel)
 {
-    const double size = fabs(sums->difference) - sums->rounding;
-    if (!(size > 0.0)) {
-        return 0.0;
-    }
-    return copysign(noise.variance > 0.0 ? size / sqrt(noise.variance) : INFINITY,
-                    sums->difference);
+    const size_t             width = (size_t)pair->width;
+    const assay_local_noise *local =
+        assay_noise_near(model, (int)(pixel % width), (int)(pixel / width));
+    assay_noisy_sums s     = assay_noisy_pixel(pair, pixel);
+    assay_noise      noise = {0};
+    fill_in(&s, local);
+    assay_noise_add(&noise, s.candidate_variance + s.reference_variance,
+                    fewer_degrees(pair, pixel));
+    add_view(&noise, s.by_reference, s.by_reference_spread);
+    add_view(&noise, s.by_candidate, s.by_candidate_spread);
+    assay_noise_add(&noise, s.reference_variance + local->candidate, ASSAY_NORMAL);
+    assay_noise_add(&noise, s.candidate_variance + local->reference, ASSAY_NORMAL);
+    return noise;
 }

@@ -1,13 +1,14 @@
 /* noise_model.h - how far apart two noisy means may be that are the same light.
  *
  * A path tracer's samples are skewed: a pixel that missed its rare bright ones has too small a mean
- * and too small a variance at once, and the plain t is too large too often.  So the variance of a
- * difference is the largest of what several say: both own variances; the reference's, on the
- * understanding that the candidate's is in proportion to it, as it is near there and in the whole
- * image; and the candidate's, likewise (docs/verdicts.md, "Variance"). */
+ * and too small a variance at once, and the plain t is too large too often.  So there are several
+ * views of the variance of a difference: both own variances; the reference's, on the understanding
+ * that the candidate's is in proportion to it, as it is near there and in the whole image; the
+ * candidate's, likewise; and of pixels, what is usual near there (docs/verdicts.md, "Variance"). */
 #ifndef ASSAY_ORACLE_NOISE_MODEL_H
 #define ASSAY_ORACLE_NOISE_MODEL_H
 
+#include "oracle/noise.h"
 #include "oracle/tile_sums.h"
 
 /* Of a tile of the smallest size. */
@@ -38,19 +39,18 @@ void         assay_noise_model_release(assay_noise_model *model);
 /* Of the tile that the pixel is in. */
 const assay_local_noise *assay_noise_near(const assay_noise_model *model, int x, int y);
 
-/* Variance of the sum of differences, and its degrees of freedom (Welch and Satterthwaite). */
-typedef struct {
-    double variance, degrees;
-} assay_noise;
-
-/* Of a tile of any size, or the whole.  design: see run_spread.h; 1 for independent pixels. */
+/* Of the sum of differences over a tile of any size, or the whole.  design: see run_spread.h; 1 for
+ * independent pixels. */
 assay_noise assay_noise_of_region(const assay_noise_model *model, const assay_noisy_sums *sums,
                                   double design);
-/* Of a pixel; its sums. */
-assay_noise assay_noise_of_pixel(const assay_noise_model *model, const assay_noisy_sums *sums,
-                                 int x, int y);
+/* Of a pixel. */
+assay_noise assay_noise_of_pixel(const assay_noise_model *model, const assay_noisy_pair *pair,
+                                 size_t pixel);
 
-/* t of the difference after what rounding may have done; +-infinity where there is no noise. */
-double assay_noise_t(const assay_noisy_sums *sums, assay_noise noise);
+/* Size of the difference after what rounding may have done; at least 0. */
+static inline double assay_noisy_size(const assay_noisy_sums *sums)
+{
+    return fmax(0.0, fabs(sums->difference) - sums->rounding);
+}
 
 #endif

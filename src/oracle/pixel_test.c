@@ -36,15 +36,6 @@ typedef struct {
     row_result              *rows;
 } pixel_job;
 
-double assay_pixel_t(const assay_noisy_pair *pair, const assay_noise_model *model, size_t pixel,
-                     assay_noise *noise_out)
-{
-    const assay_noisy_sums sums  = assay_noisy_pixel(pair, pixel);
-    const size_t           width = (size_t)pair->width;
-    *noise_out = assay_noise_of_pixel(model, &sums, (int)(pixel % width), (int)(pixel / width));
-    return assay_noise_t(&sums, *noise_out);
-}
-
 static void count_firefly(assay_fireflies *flies, size_t pixel, double difference, double variance,
                           double usual, double other)
 {
@@ -79,16 +70,19 @@ static assay_status test_row(void *user, uint64_t index, int worker)
     row->tests             = assay_multiple_tests_start(job->context, job->level);
     row->worst             = index * width;
     for (size_t pixel = index * width; pixel < (index + 1) * width; pixel++) {
-        assay_noise  noise;
-        const double t = assay_pixel_t(job->pair, job->model, pixel, &noise);
-        if (fabs(t) > fabs(row->worst_t)) {
+        const assay_noisy_sums sums  = assay_noisy_pixel(job->pair, pixel);
+        const assay_noise      noise = assay_noise_of_pixel(job->model, job->pair, pixel);
+        const double           size  = assay_noisy_size(&sums);
+        const double           sd    = sqrt(assay_noise_variance(&noise));
+        const double           t     = size > 0.0 ? size / sd : 0.0;
+        if (t > row->worst_t) {
             row->worst   = pixel;
             row->worst_t = t;
         }
-        if (fabs(t) < job->least_t) {
+        if (t < job->least_t) {
             assay_multiple_tests_add_large(&row->tests, 1);
         } else {
-            assay_multiple_tests_add(&row->tests, assay_student_log_p(t, noise.degrees),
+            assay_multiple_tests_add(&row->tests, assay_noise_log_p(&noise, size),
                                      job->first_item + pixel);
         }
         look_for_fireflies(job, row, pixel);
@@ -112,7 +106,7 @@ static void join_rows(const pixel_job *job, assay_multiple_tests *tests, assay_p
     for (int y = 0; y < job->pair->height; y++) {
         const row_result *row = &job->rows[y];
         assay_multiple_tests_append(tests, &row->tests);
-        if (fabs(row->worst_t) > fabs(result->worst_t)) {
+        if (row->worst_t > result->worst_t) {
             result->worst   = row->worst;
             result->worst_t = row->worst_t;
         }
@@ -121,25 +115,24 @@ static void join_rows(const pixel_job *job, assay_multiple_tests *tests, assay_p
     }
 }
 
-/* Medians over pixels that lie evenly in the image. */
-static assay_status typical_noise(const pixel_job *job, assay_pixel_result *result)
+/* The median over pixels that lie evenly in the image. */
+static assay_status find_typical(const pixel_job *job, assay_pixel_result *result)
 {
     const size_t pixels = (size_t)job->pair->width * (size_t)job->pair->height;
     const size_t count  = pixels < SAMPLE ? pixels : SAMPLE;
-    double      *sd     = assay_allocate(job->context, 2 * count, sizeof *sd);
-    if (!sd) {
+    double      *all    = assay_allocate(job->context, 2 * count, sizeof *all);
+    if (!all) {
         return assay_fail_memory(job->context, "the medians of noise");
     }
     for (size_t i = 0; i < count; i++) {
-        assay_noise noise;
-        assay_pixel_t(job->pair, job->model, (size_t)((double)i * (double)pixels / (double)count),
-                      &noise);
-        sd[i]         = sqrt(noise.variance);
-        sd[count + i] = noise.degrees;
+        const assay_noise noise = assay_noise_of_pixel(job->model, job->pair, i * (pixels / count));
+        all[i] = all[count + i] = assay_noise_variance(&noise);
     }
-    result->typical_sd      = assay_select(sd, count, count / 2);
-    result->typical_degrees = assay_select(sd + count, count, count / 2);
-    assay_release(job->context, sd);
+    const double median = assay_select(all, count, count / 2);
+    for (size_t i = 0; i < count; i++) {
+        result->typical = all[count + i] == median ? i * (pixels / count) : result->typical;
+    }
+    assay_release(job->context, all);
     return ASSAY_OK;
 }
 
@@ -163,7 +156,7 @@ assay_status assay_pixel_test(assay_context *context, const assay_noisy_pair *pa
         assay_parallel_for(context, "verify", (uint64_t)pair->height, test_row, &job);
     if (status == ASSAY_OK) {
         join_rows(&job, tests, &result);
-        status = tests->failed ? ASSAY_ERR_MEMORY : typical_noise(&job, &result);
+        status = tests->failed ? ASSAY_ERR_MEMORY : find_typical(&job, &result);
     }
     for (int y = 0; y < pair->height; y++) {
         assay_multiple_tests_end(&job.rows[y].tests);

@@ -15,9 +15,9 @@ typedef struct {
 } assay_fireflies;
 
 typedef struct {
-    size_t worst; /* pixel with the largest |t|  */
-    double worst_t;
-    double typical_sd, typical_degrees; /* medians over pixels, of the difference's noise */
+    size_t          worst; /* pixel whose difference is most standard deviations */
+    double          worst_t;
+    size_t          typical; /* pixel whose noise is the median                  */
     assay_fireflies candidate, reference;
 } assay_pixel_result;
 
@@ -25,9 +25,5 @@ typedef struct {
 assay_status assay_pixel_test(assay_context *context, const assay_noisy_pair *pair,
                               const assay_noise_model *model, uint64_t first_item,
                               assay_multiple_tests *tests, assay_pixel_result *result_out);
-
-/* t and log p of one pixel. */
-double assay_pixel_t(const assay_noisy_pair *pair, const assay_noise_model *model, size_t pixel,
-                     assay_noise *noise_out);
 
 #endif

@@ -104,11 +104,13 @@ assay_status assay_run_spread_make(assay_context *context, const float *const *r
     for (int l = 0; l < sums->level_count; l++) {
         spread.count += sums->levels[l].count;
     }
-    spread.mean         = assay_allocate(context, 2 * spread.count, sizeof *spread.mean);
-    assay_status status = spread.mean ? ASSAY_OK : assay_fail_memory(context, "the spread of runs");
-    if (spread.mean) {
-        spread.squares = spread.mean + spread.count;
+    double *numbers = assay_allocate(context, 2 * spread.count, sizeof *numbers);
+    if (!numbers) {
+        return assay_fail_memory(context, "the spread of runs");
     }
+    spread.mean         = numbers;
+    spread.squares      = numbers + spread.count;
+    assay_status status = ASSAY_OK;
     for (int k = 0; status == ASSAY_OK && k < count; k++) {
         assay_tile_sums one;
         status = sum_run(context, runs[k], pair, sums->levels[0].side, &one);
@@ -122,6 +124,6 @@ assay_status assay_run_spread_make(assay_context *context, const float *const *r
         conclude(&spread, count, sums, &result);
         *spread_out = result;
     }
-    assay_release(context, spread.mean);
+    assay_release(context, numbers);
     return status;
 }

@@ -17,8 +17,9 @@ enum { MOST_TERMS = 5000 };
 static double log_gamma_half_step(double a)
 {
     double below = 1.0;
-    for (; a < 16.0; a += 1.0) {
+    while (a < 16.0) {
         below *= a / (a + 0.5);
+        a += 1.0;
     }
     const double r = 1.0 / a, z = r * r;
     double       sum = -5461.0 / 425984.0;
@@ -105,25 +106,43 @@ double assay_student_log_p(double t, double degrees)
     return log_power_terms(&p) + assay_log(fraction(&p));
 }
 
+/* The place between low and high where a line between both logarithms is at log_p, or the middle
+ * where that is no place between. */
+static double between(double low, double high, double at_low, double at_high, double log_p)
+{
+    const double share = (at_low - log_p) / (at_low - at_high);
+    const double x     = low + (high - low) * share;
+    return x > low && x < high ? x : low + (high - low) / 2.0;
+}
+
 double assay_student_quantile(double log_p, double degrees)
 {
-    double low = 0.0, high = 1.0;
-    while (assay_student_log_p(high, degrees) > log_p) {
-        low = high;
+    double low = 0.0, high = 1.0, at_low = 0.0, at_high = assay_student_log_p(1.0, degrees);
+    while (at_high > log_p) {
+        low    = high;
+        at_low = at_high;
         high *= 2.0;
+        at_high = assay_student_log_p(high, degrees);
         if (isinf(high)) {
             return INFINITY;
         }
     }
-    for (;;) {
-        const double middle = low + (high - low) / 2.0;
-        if (middle <= low || middle >= high) {
-            return high;
+    /* Secants, and every third time a bisection, so that it ends. */
+    for (int step = 0; high - low > 4.0 * DBL_EPSILON * high; step++) {
+        const double x  = step % 3 == 2 || isinf(at_high)
+                              ? low + (high - low) / 2.0
+                              : between(low, high, at_low, at_high, log_p);
+        const double at = assay_student_log_p(x, degrees);
+        if (fabs(at - log_p) <= DBL_EPSILON * fabs(log_p)) {
+            return x;
         }
-        if (assay_student_log_p(middle, degrees) > log_p) {
-            low = middle;
+        if (at > log_p) {
+            low    = x;
+            at_low = at;
         } else {
-            high = middle;
+            high    = x;
+            at_high = at;
         }
     }
+    return high;
 }

@@ -283,10 +283,8 @@ assay_noise assay_verify_channel_noise(const assay_verify_channel *channel, int 
 {
     assay_noise noise = assay_noise_of_region(&channel->model, sums, channel->design[level]);
     if (level == ASSAY_TILE_LEVELS && channel->whole_degrees > 0.0) {
-        const double variance = channel->whole_run_variance + sums->reference_variance;
-        if (variance > noise.variance) {
-            noise = (assay_noise){variance, channel->whole_degrees};
-        }
+        assay_noise_add(&noise, channel->whole_run_variance + sums->reference_variance,
+                        channel->whole_degrees);
     }
     return noise;
 }

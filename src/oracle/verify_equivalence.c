@@ -17,16 +17,6 @@ typedef struct {
     size_t shown, count; /* equivalent; regions                        */
 } equivalence;
 
-/* Larger log p of the two tests that the difference lies within +-allowance. */
-static double log_p_within(const assay_noisy_sums *sums, assay_noise noise, double allowance)
-{
-    const double room = allowance - fabs(sums->difference);
-    if (noise.variance > 0.0) {
-        return assay_one_sided_log_p(room / sqrt(noise.variance), noise.degrees);
-    }
-    return room >= 0.0 ? -INFINITY : 0.0;
-}
-
 static const assay_noisy_sums *region(const assay_verify_channel *c, int level, size_t i)
 {
     return level == ASSAY_TILE_LEVELS ? &c->sums.whole : &c->sums.levels[level].sums[i];
@@ -38,10 +28,11 @@ static equivalence look(const assay_judgement *j, const assay_verify_channel *c,
     equivalence  e         = {.worst_log_p = -INFINITY};
     e.count                = level == ASSAY_TILE_LEVELS ? 1 : c->sums.levels[level].count;
     for (size_t i = 0; i < e.count; i++) {
-        const assay_noisy_sums *sums      = region(c, level, i);
-        const assay_noise       noise     = assay_verify_channel_noise(c, level, sums);
-        const double            allowance = assay_judge_allowance(j, c, sums);
-        const double            log_p     = log_p_within(sums, noise, allowance);
+        const assay_noisy_sums *sums  = region(c, level, i);
+        const assay_noise       noise = assay_verify_channel_noise(c, level, sums);
+        /* Of the two one-sided tests the less sure one. */
+        const double log_p = assay_noise_log_p_one_sided(&noise, assay_judge_allowance(j, c, sums) -
+                                                                     fabs(sums->difference));
         if (log_p > e.worst_log_p) {
             e.worst       = i;
             e.worst_log_p = log_p;
@@ -67,19 +58,18 @@ static bool find_beyond(const assay_judgement *j, int channel, int level, size_t
     return false;
 }
 
-static void fill(const assay_judgement *j, const assay_verify_channel *c, int level, size_t at,
+static void fill(assay_judgement *j, const assay_verify_channel *c, int level, size_t at,
                  assay_finding *f)
 {
     const assay_noisy_sums *sums      = region(c, level, at);
     const assay_noise       noise     = assay_verify_channel_noise(c, level, sums);
     const double            allowance = assay_judge_allowance(j, c, sums);
     const double            n         = sums->pixels;
-    assay_critical_values   critical = assay_critical_values_at(assay_log(2.0 * j->options->level));
-    const double margin = assay_critical_value(&critical, noise.degrees) * sqrt(noise.variance);
-    f->candidate        = sums->candidate / n;
-    f->reference        = sums->reference / n;
-    f->effect           = sums->reference != 0.0 ? sums->difference / fabs(sums->reference) : NAN;
-    f->bound            = allowance / n;
+    const double            margin    = assay_noise_bound(&noise, &j->within, NULL);
+    f->candidate                      = sums->candidate / n;
+    f->reference                      = sums->reference / n;
+    f->effect = sums->reference != 0.0 ? sums->difference / fabs(sums->reference) : NAN;
+    f->bound  = allowance / n;
     f->in_bounds =
         (fabs(sums->difference) + (f->kind == ASSAY_VERDICT_FAIL ? 0.0 : margin)) / allowance;
     f->visible = (allowance + margin) / n;
@@ -88,7 +78,7 @@ static void fill(const assay_judgement *j, const assay_verify_channel *c, int le
     }
 }
 
-assay_status assay_judge_add_equivalence(const assay_judgement *j, int channel, int level,
+assay_status assay_judge_add_equivalence(assay_judgement *j, int channel, int level,
                                          assay_verdict *verdict)
 {
     const assay_verify_channel *c        = &j->channels[channel];

@@ -13,12 +13,6 @@
 #include "oracle/student.h"
 #include "oracle/verify_judge.h"
 
-/* Power of what is called visible. */
-#define POWER 0.9
-
-/* Two-sided level whose upper quantile is that of 1 - POWER on one side. */
-static double power_log_p(void) { return assay_log(2.0 * (1.0 - POWER)); }
-
 static assay_finding start(const assay_verify_channel *channel, const char *test)
 {
     assay_finding finding = assay_finding_default();
@@ -28,29 +22,27 @@ static assay_finding start(const assay_verify_channel *channel, const char *test
     return finding;
 }
 
-/* Numbers of a region or pixel, per pixel. critical: the t that would have been too much. */
-static void fill(assay_finding *f, const assay_noisy_sums *sums, assay_noise noise, double critical)
+/* Numbers of a region or pixel, per pixel.  log_bound: log p at which a difference is too much. */
+static void fill(assay_finding *f, const assay_noisy_sums *sums, const assay_noise *noise,
+                 double log_bound)
 {
-    const double sd = sqrt(noise.variance), n = sums->pixels;
-    const double t = assay_noise_t(sums, noise);
-    f->candidate   = sums->candidate / n;
-    f->reference   = sums->reference / n;
-    f->effect      = sums->reference != 0.0 ? sums->difference / fabs(sums->reference) : NAN;
-    f->bound       = (critical * sd + sums->rounding) / n;
-    f->in_bounds   = isinf(t) ? INFINITY : critical > 0.0 ? fabs(t) / critical : NAN;
-    f->log_p       = assay_student_log_p(t, noise.degrees);
-    f->p           = assay_exp(f->log_p);
+    assay_critical_values critical = assay_critical_values_exact(log_bound);
+    const double          n = sums->pixels, size = assay_noisy_size(sums);
+    const double          bound = assay_noise_bound(noise, &critical, NULL);
+    f->candidate                = sums->candidate / n;
+    f->reference                = sums->reference / n;
+    f->effect    = sums->reference != 0.0 ? sums->difference / fabs(sums->reference) : NAN;
+    f->bound     = (bound + sums->rounding) / n;
+    f->in_bounds = size > 0.0 ? size / bound : 0.0;
+    f->log_p     = assay_noise_log_p(noise, size);
+    f->p         = assay_exp(f->log_p);
 }
 
-/* Smallest bias a pixel that is seen with probability POWER [cohen88]. */
-static double visible(const assay_noisy_sums *sums, assay_noise noise,
+/* Smallest bias a pixel that is seen with the power that was meant [cohen88]. */
+static double visible(const assay_noisy_sums *sums, const assay_noise *noise,
                       assay_critical_values *critical, assay_critical_values *power)
 {
-    return ((assay_critical_value(critical, noise.degrees) +
-             assay_critical_value(power, noise.degrees)) *
-                sqrt(noise.variance) +
-            sums->rounding) /
-           sums->pixels;
+    return (assay_noise_bound(noise, critical, power) + sums->rounding) / sums->pixels;
 }
 
 /* How many of a channel's tests at a level are rejected. */
@@ -86,17 +78,15 @@ assay_status assay_judge_add_problem(const assay_verify_channel *channel, assay_
     return assay_verdict_add(verdict, &finding);
 }
 
-assay_status assay_judge_add_whole(const assay_judgement *j, int channel, assay_verdict *verdict)
+assay_status assay_judge_add_whole(assay_judgement *j, int channel, assay_verdict *verdict)
 {
-    const assay_verify_channel *c        = &j->channels[channel];
-    const assay_noisy_sums     *sums     = &c->sums.whole;
-    const assay_noise           noise    = assay_verify_channel_noise(c, ASSAY_TILE_LEVELS, sums);
-    assay_critical_values       critical = assay_critical_values_at(j->whole.decision.log_bound);
-    assay_critical_values       power    = assay_critical_values_at(power_log_p());
-    assay_finding               finding  = start(c, "whole");
-    finding.values                       = (uint64_t)sums->pixels;
-    fill(&finding, sums, noise, assay_student_quantile(j->whole.decision.log_bound, noise.degrees));
-    finding.visible = visible(sums, noise, &critical, &power);
+    const assay_verify_channel *c       = &j->channels[channel];
+    const assay_noisy_sums     *sums    = &c->sums.whole;
+    const assay_noise           noise   = assay_verify_channel_noise(c, ASSAY_TILE_LEVELS, sums);
+    assay_finding               finding = start(c, "whole");
+    finding.values                      = (uint64_t)sums->pixels;
+    fill(&finding, sums, &noise, j->whole.decision.log_bound);
+    finding.visible = visible(sums, &noise, &j->whole.critical, &j->power);
     if (count_rejected(&j->whole, channel, ASSAY_TILE_LEVELS) > 0) {
         finding.kind    = ASSAY_VERDICT_FAIL;
         finding.meaning = assay_meaning_of_whole(j, channel);
@@ -111,22 +101,19 @@ typedef struct {
     double visible_median, visible_largest;
 } tile_summary;
 
-static assay_status summarise(const assay_judgement *j, const assay_verify_channel *c, int level,
+static assay_status summarise(assay_judgement *j, const assay_verify_channel *c, int level,
                               tile_summary *summary_out)
 {
-    const assay_tile_level *tiles    = &c->sums.levels[level];
-    assay_critical_values   critical = assay_critical_values_at(j->tiles.decision.log_bound);
-    assay_critical_values   power    = assay_critical_values_at(power_log_p());
-    tile_summary            summary  = {.worst_log_p = 1.0};
-    double                 *seen     = assay_allocate(j->context, tiles->count, sizeof *seen);
+    const assay_tile_level *tiles   = &c->sums.levels[level];
+    tile_summary            summary = {.worst_log_p = 1.0};
+    double                 *seen    = assay_allocate(j->context, tiles->count, sizeof *seen);
     if (!seen) {
         return assay_fail_memory(j->context, "what tiles could show");
     }
     for (size_t i = 0; i < tiles->count; i++) {
         const assay_noise noise = assay_verify_channel_noise(c, level, &tiles->sums[i]);
-        const double      log_p =
-            assay_student_log_p(assay_noise_t(&tiles->sums[i], noise), noise.degrees);
-        seen[i]                 = visible(&tiles->sums[i], noise, &critical, &power);
+        const double      log_p = assay_noise_log_p(&noise, assay_noisy_size(&tiles->sums[i]));
+        seen[i]                 = visible(&tiles->sums[i], &noise, &j->tiles.critical, &j->power);
         summary.visible_largest = fmax(summary.visible_largest, seen[i]);
         if (log_p < summary.worst_log_p) {
             summary.worst       = i;
@@ -139,7 +126,7 @@ static assay_status summarise(const assay_judgement *j, const assay_verify_chann
     return ASSAY_OK;
 }
 
-assay_status assay_judge_add_tiles(const assay_judgement *j, int channel, int level,
+assay_status assay_judge_add_tiles(assay_judgement *j, int channel, int level,
                                    assay_verdict *verdict)
 {
     const assay_verify_channel *c       = &j->channels[channel];
@@ -156,7 +143,7 @@ assay_status assay_judge_add_tiles(const assay_judgement *j, int channel, int le
     assay_finding finding = start(c, test);
     finding.values        = c->sums.levels[level].count;
     finding.place         = assay_tile_place(&c->sums, level, summary.worst);
-    fill(&finding, sums, noise, assay_student_quantile(j->tiles.decision.log_bound, noise.degrees));
+    fill(&finding, sums, &noise, j->tiles.decision.log_bound);
     finding.visible = summary.visible_median;
     if (bad > 0) {
         finding.kind    = ASSAY_VERDICT_FAIL;
@@ -225,29 +212,26 @@ static void judge_outlier(assay_finding *finding)
     }
 }
 
-assay_status assay_judge_add_pixels(const assay_judgement *j, int channel, assay_verdict *verdict)
+assay_status assay_judge_add_pixels(assay_judgement *j, int channel, assay_verdict *verdict)
 {
     const assay_verify_channel *c     = &j->channels[channel];
     const bool                  alone = c->source == ASSAY_NOISE_ALONE;
     const size_t                pixel = worst_pixel(j, channel);
     const assay_noisy_sums      sums  = assay_noisy_pixel(&c->pair, pixel);
-    assay_noise                 noise;
-    (void)assay_pixel_t(&c->pair, &c->model, pixel, &noise);
-    const uint64_t bad = count_rejected(&j->pixels, channel, 0);
+    const assay_noise           noise = assay_noise_of_pixel(&c->model, &c->pair, pixel);
+    const uint64_t              bad   = count_rejected(&j->pixels, channel, 0);
     /* Where no test of pixels decides, the outliers are those that would have been named in it. */
     const double bound = alone ? j->pixels.tests.log_level - assay_log(c->sums.whole.pixels)
                                : j->pixels.decision.log_bound;
     assay_critical_values critical = assay_critical_values_at(bound);
-    assay_critical_values power    = assay_critical_values_at(power_log_p());
     assay_finding         finding  = start(c, alone ? "outlier" : "welch");
     finding.values                 = (uint64_t)c->sums.whole.pixels;
     finding.place                  = pixel_place(c, pixel);
-    fill(&finding, &sums, noise, assay_student_quantile(bound, noise.degrees));
+    fill(&finding, &sums, &noise, bound);
     finding.ulps                   = float_ulps(sums.candidate, sums.reference);
-    const assay_noisy_sums usual   = {.pixels = 1.0};
-    const assay_noise      typical = {c->pixels.typical_sd * c->pixels.typical_sd,
-                                      c->pixels.typical_degrees};
-    finding.visible                = visible(&usual, typical, &critical, &power);
+    const assay_noisy_sums usual   = assay_noisy_pixel(&c->pair, c->pixels.typical);
+    const assay_noise      typical = assay_noise_of_pixel(&c->model, &c->pair, c->pixels.typical);
+    finding.visible                = visible(&usual, &typical, &critical, &j->power);
     if (alone) {
         judge_outlier(&finding);
     } else if (bad > 0) {

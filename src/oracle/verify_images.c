@@ -102,7 +102,7 @@ static assay_status describe_power(assay_verdict *verdict, int first, int tile)
         "%.3g percent of the mean everywhere, or of %.3g percent of it in a typical tile "
         "of %d x %d",
         100.0 * whole, 100.0 * in_tile, tile, tile);
-    if (!isnan(pixel)) {
+    if (pixel < 1000.0) {
         assay_text_add(&text, ", or of %.3g percent in a typical pixel", 100.0 * pixel);
     }
     assay_text_add_char(&text, '.');

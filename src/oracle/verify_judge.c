@@ -34,12 +34,6 @@ void assay_judgement_end(assay_judgement *judgement)
     assay_multiple_tests_end(&judgement->whole.tests);
 }
 
-double assay_one_sided_log_p(double t, double degrees)
-{
-    const double both = assay_student_log_p(t, degrees);
-    return t > 0.0 ? both - assay_log(2.0) : assay_log1p(-0.5 * assay_exp(both));
-}
-
 /* A region's mean may be dark: then a tenth of the image's mean stands for it. */
 double assay_judge_allowance(const assay_judgement *judgement, const assay_verify_channel *channel,
                              const assay_noisy_sums *sums)
@@ -59,15 +53,10 @@ static double region_log_p(const assay_judgement *judgement, const assay_verify_
 {
     const assay_noise noise = assay_verify_channel_noise(channel, level, sums);
     if (!assay_judge_equivalence(judgement->options)) {
-        return assay_student_log_p(assay_noise_t(sums, noise), noise.degrees);
+        return assay_noise_log_p(&noise, assay_noisy_size(sums));
     }
     const double beyond = fabs(sums->difference) - assay_judge_allowance(judgement, channel, sums);
-    if (!(beyond > 0.0)) {
-        return 0.0;
-    }
-    return noise.variance > 0.0
-               ? assay_one_sided_log_p(beyond / sqrt(noise.variance), noise.degrees)
-               : -INFINITY;
+    return beyond > 0.0 ? assay_noise_log_p_one_sided(&noise, beyond) : 0.0;
 }
 
 assay_status assay_judge_channel(assay_judgement *judgement, int channel)
@@ -97,19 +86,30 @@ assay_status assay_judge_channel(assay_judgement *judgement, int channel)
     return status;
 }
 
+/* Power of what is called visible: the two-sided level whose upper quantile is that of 0.1 on one
+ * side. */
+#define POWER_LOG_P assay_log(2.0 * (1.0 - 0.9))
+
 static assay_status decide(assay_judgement *j)
 {
     assay_status status =
         assay_multiple_tests_decide(&j->pixels.tests, j->options->correction, &j->pixels.decision);
-    status = status != ASSAY_OK ? status
-                                : assay_multiple_tests_decide(
-                                      &j->tiles.tests, ASSAY_CORRECTION_HOLM, &j->tiles.decision);
-    return status != ASSAY_OK ? status
-                              : assay_multiple_tests_decide(&j->whole.tests, ASSAY_CORRECTION_HOLM,
-                                                            &j->whole.decision);
+    status                            = status != ASSAY_OK ? status
+                                                           : assay_multiple_tests_decide(
+                                                                 &j->tiles.tests, ASSAY_CORRECTION_HOLM, &j->tiles.decision);
+    status                            = status != ASSAY_OK ? status
+                                                           : assay_multiple_tests_decide(
+                                                                 &j->whole.tests, ASSAY_CORRECTION_HOLM, &j->whole.decision);
+    assay_test_class *const classes[] = {&j->pixels, &j->tiles, &j->whole};
+    for (int i = 0; status == ASSAY_OK && i < ASSAY_CLASS_COUNT; i++) {
+        classes[i]->critical = assay_critical_values_at(classes[i]->decision.log_bound);
+    }
+    j->power  = assay_critical_values_at(POWER_LOG_P);
+    j->within = assay_critical_values_at(assay_log(2.0 * j->options->level));
+    return status;
 }
 
-static assay_status add_channel(const assay_judgement *j, int channel, assay_verdict *verdict)
+static assay_status add_channel(assay_judgement *j, int channel, assay_verdict *verdict)
 {
     const assay_verify_channel *c = &j->channels[channel];
     if (c->problem) {

@@ -2,6 +2,7 @@
 #ifndef ASSAY_ORACLE_VERIFY_JUDGE_H
 #define ASSAY_ORACLE_VERIFY_JUDGE_H
 
+#include "oracle/critical_values.h"
 #include "oracle/verify_channel.h"
 
 /* Shares of the level: a third each for pixels, tiles and the whole. */
@@ -11,6 +12,7 @@
 typedef struct {
     assay_multiple_tests    tests;
     assay_multiple_decision decision;
+    assay_critical_values   critical; /* of the decision */
 } assay_test_class;
 
 typedef struct {
@@ -19,6 +21,8 @@ typedef struct {
     assay_verify_channel       *channels;
     int                         count;
     assay_test_class            pixels, tiles, whole;
+    assay_critical_values       power;  /* of what is called visible          */
+    assay_critical_values       within; /* of equivalence, at the whole level */
 } assay_judgement;
 
 /* "channel << 48 | level << 40 | tile or pixel"; level is ASSAY_TILE_LEVELS for the whole. */
@@ -47,21 +51,17 @@ bool   assay_judge_equivalence(const assay_verify_options *options);
 
 /* ---- verify_findings.c ---- */
 
-assay_status assay_judge_add_pixels(const assay_judgement *judgement, int channel,
+assay_status assay_judge_add_pixels(assay_judgement *judgement, int channel,
                                     assay_verdict *verdict);
-assay_status assay_judge_add_tiles(const assay_judgement *judgement, int channel, int level,
+assay_status assay_judge_add_tiles(assay_judgement *judgement, int channel, int level,
                                    assay_verdict *verdict);
-assay_status assay_judge_add_whole(const assay_judgement *judgement, int channel,
-                                   assay_verdict *verdict);
+assay_status assay_judge_add_whole(assay_judgement *judgement, int channel, assay_verdict *verdict);
 assay_status assay_judge_add_problem(const assay_verify_channel *channel, assay_verdict *verdict);
 
 /* ---- verify_equivalence.c ---- */
 
-assay_status assay_judge_add_equivalence(const assay_judgement *judgement, int channel, int level,
+assay_status assay_judge_add_equivalence(assay_judgement *judgement, int channel, int level,
                                          assay_verdict *verdict);
-
-/* log p of a one-sided test whose two-sided one has t. */
-double assay_one_sided_log_p(double t, double degrees);
 
 /* ---- verify_meaning.c ---- */
 

@@ -61,7 +61,7 @@ static double factor_spread(const assay_verify_channel *c)
         const assay_noisy_sums *s     = &tiles->sums[i];
         const assay_noise       noise = assay_verify_channel_noise(c, 0, s);
         const double            off   = s->candidate - ratio * s->reference;
-        excess += off * off - noise.variance;
+        excess += off * off - assay_noise_variance(&noise);
         total += s->difference * s->difference;
     }
     return total > 0.0 && excess > 0.0 ? sqrt(excess / total) : 0.0;

@@ -285,6 +285,8 @@ static void junit_is_well_formed(void **state)
     assert_non_null(strstr(text, "tests=\"3\" failures=\"1\" errors=\"1\""));
     assert_non_null(strstr(text, "a&#60;b&#62;&#38;&#34;c&#34;&#39;,:%&#10;??.exr"));
     assert_null(strchr(text, '\x01'));
+    /* A surrogate in UTF-8 is no character of XML, byte by byte. */
+    assert_non_null(strstr(text, "]]&#62; ???\""));
     assay_text_destroy(*state, text);
     assay_verdict_destroy(verdict);
 }

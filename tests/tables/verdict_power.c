@@ -132,7 +132,7 @@ static void tell_nulls(assay_context *context, const pools *p, uint64_t total)
         {"Cornell box", p->mis, p->mis, 256, 16, OWN},
         {"Cornell box, many samples", p->mis_many, p->mis_many, 64, 256, OWN},
         {"the same, fireflies", p->bsdf, p->bsdf, 16, 256, OWN},
-        {"normal", p->made[NOISE_GAUSS], p->made[NOISE_GAUSS], 4, 64, OWN},
+        {"normal", p->made[NOISE_GAUSS], p->made[NOISE_GAUSS], 3, 3, OWN},
         {"log-normal", p->made[NOISE_LOGNORMAL], p->made[NOISE_LOGNORMAL], 16, 256, OWN},
         {"rare and bright", p->made[NOISE_RARE], p->made[NOISE_RARE], 16, 256, OWN},
         {"Cornell box", p->mis, p->mis, 16, 256, RUNS},
@@ -167,7 +167,7 @@ static void tell_planted(assay_context *context, const pools *p, uint64_t count)
     static const struct {
         int samples, reference_samples;
         way how;
-    } COLUMN[] = {{16, 64, OWN}, {64, 256, OWN}, {64, 256, RUNS}, {64, 256, ALONE}};
+    } COLUMN[] = {{16, 64, OWN}, {64, 128, OWN}, {16, 128, RUNS}, {64, 128, ALONE}};
     enum { COLUMNS = sizeof COLUMN / sizeof COLUMN[0] };
     printf("| defect |");
     for (int c = 0; c < COLUMNS; c++) {
