@@ -1,4 +1,5 @@
 #!/bin/sh
+# shellcheck disable=SC1091,SC2015,SC2016,SC2086,SC2154
 # `assay report`: what it refuses, what it writes, and whether the page works, in headless Chromium
 # (tests/support/report_selftest.js).  TAP.
 . tests/support/tap.sh
