@@ -6,7 +6,7 @@
 set -eu
 base=$PWD/build/arm64
 root=$base/root
-packages="libembree-dev libopenexr-dev libtinygltf-dev libsleef-dev librandom123-dev libpng-dev
+packages="libembree-dev libopenexr-dev libtinygltf-dev libsleef-dev librandom123-dev libpng-dev zlib1g-dev
           libjpeg-dev libcjson-dev libmd-dev libc6-dev libstdc++-12-dev"
 
 missing=
