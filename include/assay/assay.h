@@ -13,5 +13,6 @@
 #include "assay/scene.h"
 #include "assay/status.h"
 #include "assay/types.h"
+#include "assay/verdict.h"
 
 #endif

@@ -11,6 +11,7 @@ struct assay_array {
     size_t         rows, columns;
     double        *values; /* rows * columns, row by row                      */
     char          *name;   /* the file it was read from, or NULL: for messages */
+    size_t         file_bytes; /* of a value in that file: 8, 4, 2; 0 where it was made    */
 };
 
 /* What to call a table in a message: its file, or what it is. */

@@ -1,0 +1,18 @@
+/* stage_camera.h - the camera that a bundle's manifest describes. */
+#ifndef ASSAY_ORACLE_STAGE_CAMERA_H
+#define ASSAY_ORACLE_STAGE_CAMERA_H
+
+#include "oracle/stage.h"
+#include "assay/image.h"
+#include "scene/scene_data.h"
+
+typedef struct {
+    assay_camera camera;
+    int          width, height;
+    bool         known; /* else a camera that sees nothing, and one row of pixels */
+} stage_camera;
+
+/* For `pixels` pixels; the image's sides are those of a listed image of so many. */
+stage_camera stage_camera_read(const stage_run *run, size_t pixels);
+
+#endif
