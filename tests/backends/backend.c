@@ -6,8 +6,11 @@
  * does every stage after them by itself, and writes what it took and what it made as a new bundle.
  * It shares nothing with assay but the format (docs/bundle.md). */
 #include <stdio.h>
+#include <string.h>
 
 #include "camera.h"
+#include "cells.h"
+#include "harmonics.h"
 #include "planted.h"
 #include "splat.h"
 
@@ -26,22 +29,76 @@ static void combine(const bundle *from, bundle *to, table *indirect)
     table_release(&direct);
 }
 
-int main(int count, char **arguments)
+static void after_records(const char *reference, const char *candidate)
 {
-    if (count != 3) {
-        fputs("usage: backend REFERENCE CANDIDATE\n", stderr);
-        return 2;
-    }
-    bundle *from = bundle_open(arguments[1]), *to = bundle_create(arguments[2], from);
+    bundle *from = bundle_open(reference), *to = bundle_create(candidate, from);
     size_t  size[2];
     bundle_image_size(from, "radiance/direct", size);
     camera_place(from, to, size);
-    records r = records_take(from, to);
-    records_ask(&r, to);
-    table indirect = splat_all(&r, from, to, size[1]);
+    records r        = records_take(from, to);
+    table   indirect = splat_all(&r, from, to, size[1]);
+    if (bundle_has(from, "splat_glossy/result")) {
+        table_release(&indirect);
+        indirect = bundle_read(from, "radiance/indirect", "R G B");
+    }
     combine(from, to, &indirect);
     records_release(&r);
     bundle_close(to);
     bundle_close(from);
+}
+
+static void questions(const char *reference, const char *candidate)
+{
+    bundle *from = bundle_open(reference), *to = bundle_create(candidate, from);
+    records r = records_take(from, to);
+    records_ask(&r, to);
+    records_release(&r);
+    bundle_close(to);
+    bundle_close(from);
+}
+
+/* Texts: keys and values, in turn, NULL at the end. */
+static void alone(const char *candidate, const char *const *texts, void (*make)(bundle *))
+{
+    bundle *to = bundle_create(candidate, NULL);
+    for (; texts[0]; texts += 2) {
+        bundle_describe(to, texts[0], texts[1]);
+    }
+    make(to);
+    bundle_close(to);
+}
+
+static const char *const CELL_TEXTS[] = {"theta_strata",    "8",      "phi_strata", "24",
+                                         "strata",          "cosine", "mean",       "uniform",
+                                         "normal_gradient", "off",    NULL};
+
+static const char *const HEMISPHERE_TEXTS[] = {
+    "basis", "hsh",        "order", "6",        "convention", "thesis", "from",
+    "hsh",   "from_order", "6",     "to_order", "8",          NULL};
+
+static const char *const SPHERE_TEXTS[] = {
+    "basis",    "sh", "order", "6",   "convention", "thesis", "from",  "sh",   "from_order", "6",
+    "to_order", "6",  "alpha", "0.3", "beta",       "0.8",    "gamma", "-1.1", NULL};
+
+int main(int count, char **arguments)
+{
+    const char *what = count > 2 ? arguments[1] : "";
+    const char *last = arguments[count - 1];
+    if (count == 4 && strcmp(what, "image") == 0) {
+        after_records(arguments[2], last);
+    } else if (count == 4 && strcmp(what, "questions") == 0) {
+        questions(arguments[2], last);
+    } else if (count == 3 && strcmp(what, "cells") == 0) {
+        alone(last, CELL_TEXTS, cells_gather);
+    } else if (count == 3 && strcmp(what, "hemisphere") == 0) {
+        alone(last, HEMISPHERE_TEXTS, harmonics_of_hemisphere);
+    } else if (count == 3 && strcmp(what, "sphere") == 0) {
+        alone(last, SPHERE_TEXTS, harmonics_of_sphere);
+    } else {
+        fputs("usage: backend image|questions REFERENCE CANDIDATE\n"
+              "       backend cells|hemisphere|sphere CANDIDATE\n",
+              stderr);
+        return 2;
+    }
     return 0;
 }

@@ -149,7 +149,8 @@ bundle *bundle_create(const char *folder, const bundle *like)
     cJSON_AddStringToObject(b->manifest, "format", "assay-bundle");
     cJSON_AddNumberToObject(b->manifest, "version", 1);
     cJSON_AddStringToObject(b->manifest, "tool", "backend");
-    cJSON_ArrayForEach(item, like->manifest)
+    const cJSON *texts = like ? like->manifest : NULL;
+    cJSON_ArrayForEach(item, texts)
     {
         if (cJSON_IsString(item) && !cJSON_HasObjectItem(b->manifest, item->string)) {
             cJSON_AddStringToObject(b->manifest, item->string, item->valuestring);
@@ -157,6 +158,11 @@ bundle *bundle_create(const char *folder, const bundle *like)
     }
     cJSON_AddArrayToObject(b->manifest, "arrays");
     return b;
+}
+
+void bundle_describe(bundle *b, const char *key, const char *value)
+{
+    cJSON_AddStringToObject(b->manifest, key, value);
 }
 
 static void make_folders_of(const char *path)

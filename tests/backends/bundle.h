@@ -25,8 +25,10 @@ void bundle_image_size(const bundle *b, const char *name, size_t size_out[2]);
 
 /* ---- out ---- */
 
-/* A new folder, and the texts of another bundle's manifest. */
+/* A new folder, and the texts of another bundle's manifest (NULL: none). */
 bundle *bundle_create(const char *folder, const bundle *like);
+/* A text of the manifest. */
+void bundle_describe(bundle *b, const char *key, const char *value);
 /* Ends the table. */
 void bundle_write(bundle *b, const char *name, const char *unit, table *t);
 /* Reads an array there and writes it here as it is, in single precision. */
