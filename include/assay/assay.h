@@ -10,6 +10,7 @@
 #include "assay/params.h"
 #include "assay/plot.h"
 #include "assay/render.h"
+#include "assay/replay.h"
 #include "assay/scene.h"
 #include "assay/status.h"
 #include "assay/types.h"

@@ -38,18 +38,22 @@ ASSAY_API int              assay_stage_count(void);
 ASSAY_API assay_stage_info assay_stage_at(int index);
 
 /* What a candidate computes with: IEEE 754 binary16, binary32, binary64. */
-typedef enum { ASSAY_PRECISION_HALF, ASSAY_PRECISION_FLOAT, ASSAY_PRECISION_DOUBLE } assay_precision;
+typedef enum {
+    ASSAY_PRECISION_HALF,
+    ASSAY_PRECISION_FLOAT,
+    ASSAY_PRECISION_DOUBLE
+} assay_precision;
 
 /* "half", "float", "double".  Errors: ARGUMENT. */
 ASSAY_API assay_status assay_precision_find(const char *name, assay_precision *precision_out);
 
 typedef struct {
     const char            *stage;
-    const char            *in, *out;  /* bundles; out is made                                 */
-    const assay_scene     *scene;     /* NULL without                                         */
-    const assay_precision *bounds;    /* adds NAME_bound for each array NAME; NULL: none      */
+    const char            *in, *out; /* bundles; out is made                                 */
+    const assay_scene     *scene;    /* NULL without                                         */
+    const assay_precision *bounds;   /* adds NAME_bound for each array NAME; NULL: none      */
     int                    param_count;
-    const char *const     *params;    /* "key=value", before what the manifest says           */
+    const char *const     *params; /* "key=value", before what the manifest says           */
 } assay_replay_options;
 
 /* Errors: ARGUMENT (no such stage or parameter; a scene is missing), NOT_FOUND, FORMAT, DOMAIN,

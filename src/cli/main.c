@@ -16,6 +16,7 @@ static const struct {
     {"scene", cli_scene, "tell what a glTF scene holds, and what of it is not supported"},
     {"methods", cli_methods, "list the methods, their parameters, ranges and sources"},
     {"diff", cli_diff, "compare two OpenEXR images"},
+    {"replay", cli_replay, "run one stage on given arrays: what should have come out of yours?"},
     {"basis", cli_basis, "SH, HSH and other bases: values, projections, rotations, pictures"},
 };
 
@@ -55,7 +56,7 @@ static int run_command(int argc, char **argv)
         }
     }
     cli_complain(name,
-                 "unknown command or option; the commands are render, scene, methods, diff, basis");
+                 "unknown command or option; the commands are render, scene, methods, diff, replay, basis");
     return CLI_EXIT_USAGE;
 }
 

@@ -219,10 +219,9 @@ static assay_status read_bytes(const assay_bundle_reader *reader, const char *na
                                const char *path, const char *listed, uint8_t **bytes_out,
                                size_t *count_out)
 {
-    uint8_t     *bytes = NULL;
-    size_t       count = 0;
-    assay_status status =
-        assay_read_file(reader->context, path, (uint64_t)1 << 40, &bytes, &count);
+    uint8_t     *bytes  = NULL;
+    size_t       count  = 0;
+    assay_status status = assay_read_file(reader->context, path, (uint64_t)1 << 40, &bytes, &count);
     if (status != ASSAY_OK) {
         return status;
     }

@@ -42,7 +42,8 @@ typedef struct {
 } assay_bundle_entry;
 
 int assay_bundle_count(const assay_bundle_reader *reader);
-/* Errors: FORMAT (no name or one that is no file's in the folder; no file, unit, dtype or shape). */
+/* Errors: FORMAT (no name or one that is no file's in the folder; no file, unit, dtype or shape).
+ */
 assay_status assay_bundle_entry_at(const assay_bundle_reader *reader, int index,
                                    assay_bundle_entry *entry_out);
 /* Whether the manifest lists an array of this name, whatever else it says of it. */
@@ -57,8 +58,9 @@ const char *assay_bundle_text_at(const assay_bundle_reader *reader, int index,
                                  const char **value_out);
 
 /* An array of any kind: a table as it is; of an image a row a pixel, row by row from the top left,
- * with the channels named ("R G B"; NULL: all, by name) as columns.  Errors: FORMAT (the file is not what the manifest
- * lists: digest, shape, dtype, channels), NOT_FOUND, UNSUPPORTED, LIMIT, MEMORY. */
+ * with the channels named ("R G B"; NULL: all, by name) as columns.  Errors: FORMAT (the file is
+ * not what the manifest lists: digest, shape, dtype, channels), NOT_FOUND, UNSUPPORTED, LIMIT,
+ * MEMORY. */
 assay_status assay_bundle_read_array(const assay_bundle_reader *reader, const char *name,
                                      const char *channels, assay_array **table_out);
 

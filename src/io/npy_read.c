@@ -223,7 +223,7 @@ static double read_value(const uint8_t *bytes, size_t item_bytes)
     if (item_bytes < 8) {
         const uint32_t low =
             item_bytes == 4 ? (uint32_t)bits : assay_half_to_float_bits((uint16_t)bits);
-        float          f;
+        float f;
         memcpy(&f, &low, sizeof f);
         return f;
     }

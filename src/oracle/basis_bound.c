@@ -35,14 +35,14 @@ typedef struct {
 
 static place place_of(const rounding *r, const assay_basis *basis, assay_vec3 d)
 {
-    const double side  = d.x * d.x + d.y * d.y;
-    const double far   = sqrt(side);
-    const double loss  = 2.0 * (r->u + r->given);
-    place        p     = {.t = tracked_given(r, d.z), .size = far, .error = r->given * far};
+    const double side = d.x * d.x + d.y * d.y;
+    const double far  = sqrt(side);
+    const double loss = 2.0 * (r->u + r->given);
+    place        p    = {.t = tracked_given(r, d.z), .size = far, .error = r->given * far};
     if (!basis_is_spherical(basis->kind)) {
-        const double z    = d.z > 0.0 ? d.z : 0.0;
-        const double root = basis->kind == ASSAY_BASIS_ZERNIKE ? sqrt(1.0 / (1.0 + z))
-                                                               : 2.0 * sqrt(z / (1.0 + z));
+        const double z = d.z > 0.0 ? d.z : 0.0;
+        const double root =
+            basis->kind == ASSAY_BASIS_ZERNIKE ? sqrt(1.0 / (1.0 + z)) : 2.0 * sqrt(z / (1.0 + z));
         p.t     = (tracked){2.0 * z - 1.0, 2.0 * r->given * z + r->u};
         p.size  = far * root;
         p.error = (3.0 * r->given + 4.0 * r->u) * p.size;
@@ -62,10 +62,10 @@ static void walk(const rounding *r, const basis_step *step, int steps, tracked t
         const double slope  = step[k].exponent < 0 ? 0.5 : step[k].exponent + 1.0;
         const double shift  = step[k].b_hi + step[k].b_lo;
         const double before = k > 0 ? p[k - 1].v : 0.0;
-        x[k]     = slope * (t.v - shift);
-        g[k]     = step[k].g_hi + step[k].g_lo;
-        p[k + 1] = tracked_exact(x[k] * p[k].v - g[k] * before);
-        d[k + 1] = r->u * (3.0 * fabs(x[k] * p[k].v) + slope * fabs(shift * p[k].v) +
+        x[k]                = slope * (t.v - shift);
+        g[k]                = step[k].g_hi + step[k].g_lo;
+        p[k + 1]            = tracked_exact(x[k] * p[k].v - g[k] * before);
+        d[k + 1]            = r->u * (3.0 * fabs(x[k] * p[k].v) + slope * fabs(shift * p[k].v) +
                            3.0 * fabs(g[k] * before) + 2.0 * fabs(p[k + 1].v)) +
                    t.e * slope * fabs(p[k].v);
     }
@@ -103,13 +103,12 @@ void basis_bound(const rounding *r, const assay_basis *basis, assay_vec3 directi
         const double turn  = m > 0 ? 2.0 * m * power(most, m - 1) * (most - at.size) : 0.0;
         const double size  = power(at.size, m);
         const double norms = (4.0 * m + 6.0) * r->u + at.weight;
-        const double light = basis->kind == ASSAY_BASIS_MAKHOTKIN_SQRT
-                                 ? sqrt(fmax(direction.z, 0.0))
-                                 : 1.0;
+        const double light =
+            basis->kind == ASSAY_BASIS_MAKHOTKIN_SQRT ? sqrt(fmax(direction.z, 0.0)) : 1.0;
         walk(r, step, basis->steps[m], at.t, p);
         for (int k = 0; k < basis->steps[m]; k++) {
-            const double scale = fabs(step[k].scale) * light;
-            const double error = scale * (p[k].e * (size + turn) + fabs(p[k].v) * turn);
+            const double scale   = fabs(step[k].scale) * light;
+            const double error   = scale * (p[k].e * (size + turn) + fabs(p[k].v) * turn);
             const int    index[] = {step[k].plus, step[k].minus};
             for (int i = 0; i < 2; i++) {
                 if (index[i] >= 0) {

@@ -1,4 +1,5 @@
-/* basis_bound.h - how far the functions of a basis may be off that are computed with less precision.
+/* basis_bound.h - how far the functions of a basis may be off that are computed with less
+ * precision.
  */
 #ifndef ASSAY_ORACLE_BASIS_BOUND_H
 #define ASSAY_ORACLE_BASIS_BOUND_H

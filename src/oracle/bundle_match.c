@@ -1,5 +1,5 @@
-/* bundle_match.c - Invariant: what passes here was read whole once, so a stage that is not looked at
- * hides no broken file. */
+/* bundle_match.c - Invariant: what passes here was read whole once, so a stage that is not looked
+ * at hides no broken file. */
 #include "oracle/bundle_match.h"
 
 #include <math.h>
@@ -123,7 +123,7 @@ static assay_status fail_array(assay_context *context, const assay_bundle_reader
 
 static assay_status match_entry(assay_context *context, const assay_bundle_reader *candidate,
                                 const assay_bundle_reader *reference,
-                                const assay_bundle_entry *entry)
+                                const assay_bundle_entry  *entry)
 {
     assay_bundle_entry like;
     if (!find_like(reference, entry->name, &like)) {
@@ -135,9 +135,10 @@ static assay_status match_entry(assay_context *context, const assay_bundle_reade
         return fail_array(context, candidate, entry, words);
     }
     if (!is_type(entry)) {
-        return fail_array(context, candidate, entry,
-                          "has a dtype that is not float64, float32, float16 (of an image: float32, "
-                          "uint32)");
+        return fail_array(
+            context, candidate, entry,
+            "has a dtype that is not float64, float32, float16 (of an image: float32, "
+            "uint32)");
     }
     if (columns_of(entry) != columns_of(&like) ||
         (rows_of(entry) != rows_of(&like) && !has_free_rows(entry->name))) {
@@ -185,7 +186,7 @@ static assay_status count_like(const assay_bundle_reader *reference, const char 
 
 static assay_status match_values(assay_context *context, const assay_bundle_reader *candidate,
                                  const assay_bundle_reader *reference,
-                                 const assay_bundle_entry *entry)
+                                 const assay_bundle_entry  *entry)
 {
     assay_array *table  = NULL;
     assay_status status = assay_bundle_read_array(candidate, entry->name, NULL, &table);
@@ -199,11 +200,11 @@ static assay_status match_values(assay_context *context, const assay_bundle_read
         if (status == ASSAY_OK &&
             ((odd.nan > 0 && theirs.nan == 0) || (odd.infinite > 0 && theirs.infinite == 0))) {
             const size_t columns = assay_array_columns(table);
-            status = assay_fail(context, ASSAY_ERR_DOMAIN,
-                                "%s: bundle: '%s', row %zu, column %zu: a number that is not "
-                                "finite, of which the reference has none",
-                                assay_bundle_path(candidate), entry->name, odd.first / columns,
-                                odd.first % columns);
+            status               = assay_fail(context, ASSAY_ERR_DOMAIN,
+                                              "%s: bundle: '%s', row %zu, column %zu: a number that is not "
+                                                            "finite, of which the reference has none",
+                                              assay_bundle_path(candidate), entry->name, odd.first / columns,
+                                              odd.first % columns);
         }
     }
     assay_array_destroy(table);
@@ -229,7 +230,7 @@ assay_status bundle_match_arrays(assay_context *context, const assay_bundle_read
     for (int i = 0; i < assay_bundle_count(candidate); i++) {
         assay_bundle_entry entry;
         assay_status       status = assay_bundle_entry_at(candidate, i, &entry);
-        status = status ? status : check_unique(context, candidate, i, &entry);
+        status                    = status ? status : check_unique(context, candidate, i, &entry);
         status = status ? status : match_entry(context, candidate, reference, &entry);
         status = status ? status : match_values(context, candidate, reference, &entry);
         if (status != ASSAY_OK) {

@@ -6,8 +6,8 @@
  * The borders' sines and cosines are functions of whole numbers that a candidate computes itself:
  * phi = 2 pi k / N is off by 3 u phi (the constant, the product, the quotient), a sine by that and
  * by 2 u (one unit of the last place of the function); sin theta = sqrt(j / M) by 2 u of itself, or
- * by what a root of 1 - cos^2 makes of that, and theta = asin or acos by what these make of it.  Differences of cosines and sines lose
- * what they cancel. */
+ * by what a root of 1 - cos^2 makes of that, and theta = asin or acos by what these make of it.
+ * Differences of cosines and sines lose what they cancel. */
 #include "oracle/irradiance_bound.h"
 
 typedef struct {
@@ -67,16 +67,13 @@ static double bound_irradiance(const rounding *r, const assay_hemisphere *h, int
     tracked_sum  sum     = {0};
     for (size_t i = 0; i < count; i++) {
         const tracked l = tracked_given(r, channel_of(&h->cells[i], c));
-        tracked_sum_add(&sum, uniform
-                                  ? tracked_mul(r, l, tracked_given(r, h->cells[i].direction.z))
-                                  : l);
+        tracked_sum_add(&sum,
+                        uniform ? tracked_mul(r, l, tracked_given(r, h->cells[i].direction.z)) : l);
     }
-    const tracked scale =
-        tracked_div(r, tracked_constant(r, uniform ? ASSAY_TWO_PI : ASSAY_PI),
-                    tracked_exact((double)count));
+    const tracked scale = tracked_div(r, tracked_constant(r, uniform ? ASSAY_TWO_PI : ASSAY_PI),
+                                      tracked_exact((double)count));
     /* The scale may be taken into each term. */
-    return tracked_mul(r, tracked_sum_of(r, &sum), scale).e +
-           2.0 * r->u * sum.size * fabs(scale.v);
+    return tracked_mul(r, tracked_sum_of(r, &sum), scale).e + 2.0 * r->u * sum.size * fabs(scale.v);
 }
 
 /* cos theta_j - cos theta_(j + 1), by whatever form: the difference itself loses most. */
@@ -127,7 +124,7 @@ static void to_world(const rounding *r, const assay_frame3 *frame, const tracked
                      double *bounds)
 {
     const tracked3 x = tracked3_given(r, frame->x), y = tracked3_given(r, frame->y);
-    const tracked3 z  = tracked3_given(r, frame->z);
+    const tracked3 z      = tracked3_given(r, frame->z);
     const tracked3 rows[] = {{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}};
     for (int i = 0; i < 3; i++) {
         bounds[i] = tracked3_dot(r, &rows[i], local).e;
@@ -171,9 +168,9 @@ static void bound_rotation(const rounding *r, const assay_hemisphere *h, const a
         const border  a = border_of(r, &h->theta[j]), b = border_of(r, &h->theta[j + 1]);
         const tracked weight = rotation_weight(r, &a, &b);
         for (int k = 0; k < h->layout.phi; k++) {
-            const column  at   = column_of(r, h, k);
-            const tracked step = tracked_mul(
-                r, step_between(r, before(h, j, k), &row_of(h, j)[k], c), weight);
+            const column  at = column_of(r, h, k);
+            const tracked step =
+                tracked_mul(r, step_between(r, before(h, j, k), &row_of(h, j)[k], c), weight);
             add(r, &sum, step, at.border_cos, at.border_sin);
         }
     }
@@ -216,8 +213,7 @@ static void add_phi_walls(const rounding *r, const assay_hemisphere *h, int j, i
         const column      where = column_of(r, h, k);
         const tracked     step =
             tracked_mul(r, step_between(r, left, right, c), speed_of(r, left, right));
-        add(r, sum, tracked_mul(r, step, flux), tracked_negate(where.border_sin),
-            where.border_cos);
+        add(r, sum, tracked_mul(r, step, flux), tracked_negate(where.border_sin), where.border_cos);
     }
 }
 

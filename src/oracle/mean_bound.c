@@ -1,12 +1,14 @@
 /* mean_bound.c - the extreme of a mean over a box of weights.
  *
- * The mean sum(w x) / sum(w) is largest where every weight is at one of its ends: the high one where
- * x is above that largest mean, the low one below.  Dinkelbach's iteration [dinkelbach67] finds it:
- * from any mean t, the mean by the ends that t asks for is at least t; it stops at the largest after
- * finitely many steps, as each step but the last one raises it and there are finitely many choices.
+ * The mean sum(w x) / sum(w) is largest where every weight is at one of its ends: the high one
+ * where x is above that largest mean, the low one below.  Dinkelbach's iteration [dinkelbach67]
+ * finds it: from any mean t, the mean by the ends that t asks for is at least t; it stops at the
+ * largest after finitely many steps, as each step but the last one raises it and there are finitely
+ * many choices.
  *
  * What the rounding of sums, products and the quotient adds is relative to the mean of |x|: the
- * products' sum is off by (1 + u)^n - 1 of the sum of |w x|, the weights' by (1 + u)^(n - 1) - 1. */
+ * products' sum is off by (1 + u)^n - 1 of the sum of |w x|, the weights' by (1 + u)^(n - 1) - 1.
+ */
 #include "oracle/mean_bound.h"
 
 static double part_value(const mean_part *part, int channel, double sign)
@@ -58,7 +60,8 @@ double mean_bound(const rounding *r, const mean_part *parts, size_t count, int c
             size = fmax(size, fabs(parts[i].said[channel].v) + parts[i].said[channel].e);
         }
     }
-    const double n     = (double)count;
-    const double grown = rounding_growth(r, 2.0 * n + 1.0) / (1.0 - fmin(0.5, rounding_growth(r, n)));
+    const double n = (double)count;
+    const double grown =
+        rounding_growth(r, 2.0 * n + 1.0) / (1.0 - fmin(0.5, rounding_growth(r, n)));
     return fmax(fmax(high - value, value - low), 0.0) + grown * size + r->tiny * n;
 }

@@ -1,8 +1,8 @@
 /* record_bound.c - [gautron06] eq. 2.5, 2.7 and [tabellion04] in tracked arithmetic.
  *
- * Invariant: every number that a candidate of this precision can compute from the given ones, in any
- * order of its sums, lies within the bounds; a comparison whose sides come nearer than their errors
- * may go either way (BOUND_MAYBE).
+ * Invariant: every number that a candidate of this precision can compute from the given ones, in
+ * any order of its sums, lies within the bounds; a comparison whose sides come nearer than their
+ * errors may go either way (BOUND_MAYBE).
  *
  * The cosine's rounding is what counts: 1 - n . n_k of equal normals is anything up to some u, so
  * the weight of a record at its own place is anything from 1 / sqrt(u) to ASSAY_WEIGHT_MAX. */
@@ -45,8 +45,8 @@ static bound_membership is_not_in_front(const rounding *r, const assay_record *r
     const tracked3 sum    = {tracked_add(r, a->x, b->x), tracked_add(r, a->y, b->y),
                              tracked_add(r, a->z, b->z)};
     const tracked  height = tracked_mul(r, tracked_exact(0.5), tracked3_dot(r, offset, &sum));
-    const tracked  least  = tracked_mul(r, tracked_constant(r, -ASSAY_IN_FRONT),
-                                        tracked_given(r, record->radius));
+    const tracked  least =
+        tracked_mul(r, tracked_constant(r, -ASSAY_IN_FRONT), tracked_given(r, record->radius));
     return at_most(least, height);
 }
 
@@ -69,8 +69,8 @@ static weight_bound tabellion(const rounding *r, tracked moved, tracked turned, 
 {
     const tracked by_turn = tracked_div(r, turned, tracked_constant(r, RECORD_ROOT_10_DEG));
     const tracked change  = {fmax(moved.v, by_turn.v), fmax(moved.e, by_turn.e)};
-    const tracked weight  = tracked_sub(r, tracked_exact(1.0),
-                                        tracked_div(r, change, tracked_constant(r, a)));
+    const tracked weight =
+        tracked_sub(r, tracked_exact(1.0), tracked_div(r, change, tracked_constant(r, a)));
     return (weight_bound){.member = at_most(tracked_exact(0.0), weight),
                           .value  = fmax(weight.v, 0.0),
                           .low    = fmax(tracked_low(weight), 0.0),
@@ -86,9 +86,8 @@ weight_bound record_weight_bound(const rounding *r, bool exact, const assay_reco
     const tracked  distance = tracked_sqrt(r, tracked3_dot(r, &offset, &offset));
     const tracked  moved    = tracked_div(r, distance, tracked_given(r, record->radius));
     const tracked  turned   = turn_of(r, &a, &b);
-    weight_bound   w        = rules->weight == ASSAY_WEIGHT_TABELLION
-                                  ? tabellion(r, moved, turned, rules->a)
-                                  : ward(r, moved, turned, rules->a);
+    weight_bound w = rules->weight == ASSAY_WEIGHT_TABELLION ? tabellion(r, moved, turned, rules->a)
+                                                             : ward(r, moved, turned, rules->a);
     if (rules->in_front) {
         w.member = worse(w.member, is_not_in_front(r, record, &offset, &a, &b));
     }
@@ -125,13 +124,13 @@ void record_said_bound(const rounding *r, bool exact, const assay_record *record
     }
 }
 
-/* d <= a R and what distance and radius lose: given coordinates are off by `given`, their difference
- * and the sum of three squares by a few u; the turn is at least 0. */
+/* d <= a R and what distance and radius lose: given coordinates are off by `given`, their
+ * difference and the sum of three squares by a few u; the turn is at least 0. */
 double record_reach_bound(const rounding *r, const assay_record *record,
                           const assay_record_rules *rules, double coordinate)
 {
-    const double own = fmax(fmax(fabs(record->position.x), fabs(record->position.y)),
-                            fabs(record->position.z));
+    const double own =
+        fmax(fmax(fabs(record->position.x), fabs(record->position.y)), fabs(record->position.z));
     const double few = 16.0 * (r->u + r->given);
     return record_reach(record, rules) * (1.0 + few) + 4.0 * (r->given + r->u) * (own + coordinate);
 }

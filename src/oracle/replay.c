@@ -23,7 +23,7 @@ static assay_status fail_stage(assay_context *context, const char *name)
 /* What is written for every bundle, and what this stage says itself. */
 static bool is_own_key(const char *key)
 {
-    static const char *const own[] = {"format", "version", "tool",  "arrays",
+    static const char *const own[] = {"format", "version", "tool",   "arrays",
                                       "stage",  "bounds",  "content"};
     for (size_t i = 0; i < sizeof own / sizeof own[0]; i++) {
         if (strcmp(own[i], key) == 0) {

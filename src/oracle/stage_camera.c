@@ -37,8 +37,8 @@ static bool read_camera(const stage_run *run, assay_camera *camera)
         return ok && camera->tan_half_yfov > 0.0;
     }
     camera->orthographic = true;
-    return ok && read_numbers(assay_bundle_text(run->bundle, "assay:camera.xmag"), 1,
-                              &camera->xmag) &&
+    return ok &&
+           read_numbers(assay_bundle_text(run->bundle, "assay:camera.xmag"), 1, &camera->xmag) &&
            read_numbers(assay_bundle_text(run->bundle, "assay:camera.ymag"), 1, &camera->ymag) &&
            camera->xmag > 0.0 && camera->ymag > 0.0;
 }
@@ -61,8 +61,8 @@ static bool find_sides(const stage_run *run, size_t pixels, int *width, int *hei
 stage_camera stage_camera_read(const stage_run *run, size_t pixels)
 {
     stage_camera view = {.width = (int)pixels, .height = 1};
-    view.known        = find_sides(run, pixels, &view.width, &view.height) &&
-                 read_camera(run, &view.camera);
+    view.known =
+        find_sides(run, pixels, &view.width, &view.height) && read_camera(run, &view.camera);
     if (!view.known) {
         /* Every point is behind it, so its boxes are the image. */
         view.camera = (assay_camera){.position      = vec3(0.0, 0.0, 0.0),

@@ -2,8 +2,8 @@
 #ifndef ASSAY_ORACLE_STAGE_CAMERA_H
 #define ASSAY_ORACLE_STAGE_CAMERA_H
 
-#include "oracle/stage.h"
 #include "assay/image.h"
+#include "oracle/stage.h"
 #include "scene/scene_data.h"
 
 typedef struct {

@@ -19,7 +19,7 @@ static const assay_stage_array OUTPUTS[] = {
 static assay_status run_combine(stage_run *run)
 {
     const stage_table *direct = &run->in[DIRECT], *indirect = &run->in[INDIRECT];
-    stage_output      *out    = NULL;
+    stage_output      *out = NULL;
     if (indirect->rows != direct->rows) {
         return stage_fail_rows(run, INDIRECT, direct->rows, "one a pixel, as radiance/direct has");
     }
@@ -36,10 +36,9 @@ static assay_status run_combine(stage_run *run)
     return status;
 }
 
-const oracle_stage stage_combine = {
-    .info = {.name    = "combine",
-             .summary = "direct and indirect light to the image",
-             .params  = PARAMS,
-             .inputs  = INPUTS,
-             .outputs = OUTPUTS},
-    .run  = run_combine};
+const oracle_stage stage_combine = {.info = {.name    = "combine",
+                                             .summary = "direct and indirect light to the image",
+                                             .params  = PARAMS,
+                                             .inputs  = INPUTS,
+                                             .outputs = OUTPUTS},
+                                    .run  = run_combine};

@@ -69,9 +69,10 @@ static assay_status run_convert(stage_run *run)
     assay_status  status =
         assay_basis_create(run->context, sh ? ASSAY_BASIS_SH : ASSAY_BASIS_HSH,
                            assay_params_int(run->params, "from_order"), convention, &from);
-    status = status ? status
-                    : assay_basis_create(run->context, sh ? ASSAY_BASIS_HSH : ASSAY_BASIS_SH,
-                                         assay_params_int(run->params, "to_order"), convention, &to);
+    status = status
+                 ? status
+                 : assay_basis_create(run->context, sh ? ASSAY_BASIS_HSH : ASSAY_BASIS_SH,
+                                      assay_params_int(run->params, "to_order"), convention, &to);
     status = status ? status : assay_basis_conversion(run->context, from, to, &matrix);
     status = status ? status : convert(run, matrix);
     assay_sparse_destroy(matrix);

@@ -1,7 +1,7 @@
 /* stage_interpolate.c - stage `interpolate`: what a given cache says at given points.
  *
- * Where no record contributes, the sum of weights and the irradiance are 0: what a method does there
- * (the nearest record, black) is its own affair. */
+ * Where no record contributes, the sum of weights and the irradiance are 0: what a method does
+ * there (the nearest record, black) is its own affair. */
 #include <string.h>
 
 #include "core/alloc.h"
@@ -59,9 +59,9 @@ static assay_status collect(const job_data *job, desk *own, assay_vec3 p, assay_
     void                *grown   = own->parts;
     size_t               count   = 0;
     assay_status         status  = stage_records_near(records, own->walk, p, &own->near);
-    status = status ? status
-                    : assay_grow(records->context, &grown, &own->capacity, own->near.count + 1,
-                                 sizeof *own->parts);
+    status                       = status ? status
+                                          : assay_grow(records->context, &grown, &own->capacity, own->near.count + 1,
+                                                       sizeof *own->parts);
     if (status != ASSAY_OK) {
         return ASSAY_ERR_MEMORY;
     }
@@ -77,8 +77,7 @@ static assay_status collect(const job_data *job, desk *own, assay_vec3 p, assay_
             part->low           = sure ? w.low : 0.0;
             part->high          = w.high;
             record_said_bound(r, records->exact, record, &records->rules, p, n, part->said);
-            tracked_sum_add(weights,
-                            (tracked){counts, fmax(w.high - counts, counts - part->low)});
+            tracked_sum_add(weights, (tracked){counts, fmax(w.high - counts, counts - part->low)});
         }
     }
     *count_out = count;
@@ -95,7 +94,7 @@ static assay_status bound_point(const job_data *job, desk *own, size_t i, assay_
         return ASSAY_ERR_MEMORY;
     }
     job->out[OUT_WEIGHT]->bounds[i] = tracked_sum_of(r, &weights).e;
-    double surest = 0.0;
+    double surest                   = 0.0;
     for (size_t k = 0; k < count; k++) {
         surest += own->parts[k].low;
     }
@@ -114,10 +113,9 @@ static assay_status bound_point(const job_data *job, desk *own, size_t i, assay_
 
 static assay_status ask_point(const job_data *job, desk *own, size_t i)
 {
-    const assay_vec3   p = stage_vec3(job->run->in[QUERY_POSITION].values + 3 * i);
-    const assay_vec3   n = job->normals[i];
-    const assay_status status =
-        assay_record_store_find(job->store, p, n, UINT32_MAX, &own->found);
+    const assay_vec3   p      = stage_vec3(job->run->in[QUERY_POSITION].values + 3 * i);
+    const assay_vec3   n      = job->normals[i];
+    const assay_status status = assay_record_store_find(job->store, p, n, UINT32_MAX, &own->found);
     if (status != ASSAY_OK) {
         return status;
     }

@@ -53,10 +53,11 @@ assay_status stage_cells_check(const stage_run *run)
 {
     const char *gather = stage_manifest_text(run->bundle, "gather");
     if (gather && strncmp(gather, "raster", 6) == 0) {
-        return assay_fail(run->context, ASSAY_ERR_UNSUPPORTED,
-                          "%s: bundle: its hemispheres were rasterised (gather=%s), stage '%s' is of "
-                          "rays",
-                          assay_bundle_path(run->bundle), gather, run->stage->info.name);
+        return assay_fail(
+            run->context, ASSAY_ERR_UNSUPPORTED,
+            "%s: bundle: its hemispheres were rasterised (gather=%s), stage '%s' is of "
+            "rays",
+            assay_bundle_path(run->bundle), gather, run->stage->info.name);
     }
     return ASSAY_OK;
 }

@@ -24,7 +24,7 @@ static const assay_stage_array OUTPUTS[] = {
 static assay_status run_normalise(stage_run *run)
 {
     const stage_table *weight = &run->in[WEIGHT], *sum = &run->in[RADIANCE];
-    stage_output      *out    = NULL;
+    stage_output      *out = NULL;
     if (sum->rows != weight->rows) {
         return stage_fail_rows(run, RADIANCE, weight->rows, "one a pixel, as the weights have");
     }

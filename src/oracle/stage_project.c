@@ -34,13 +34,12 @@ static assay_status fill_bounds(const stage_run *run, const assay_basis *basis,
 {
     const rounding *r       = &run->rounding;
     const size_t    samples = run->in[DIRECTION].rows, count = assay_basis_count(basis);
-    const bool   hemisphere = assay_basis_kind_is_hemispherical(assay_basis_kind_of(basis));
-    tracked     *functions  = assay_allocate(run->context, count, sizeof *functions);
-    double      *values     = assay_allocate(run->context, count, sizeof *values);
-    tracked_sum *sums       = assay_allocate(run->context, channels * count, sizeof *sums);
-    assay_status status     = functions && values && sums
-                                  ? ASSAY_OK
-                                  : assay_fail_memory(run->context, "a projection");
+    const bool      hemisphere = assay_basis_kind_is_hemispherical(assay_basis_kind_of(basis));
+    tracked        *functions  = assay_allocate(run->context, count, sizeof *functions);
+    double         *values     = assay_allocate(run->context, count, sizeof *values);
+    tracked_sum    *sums       = assay_allocate(run->context, channels * count, sizeof *sums);
+    assay_status    status =
+        functions && values && sums ? ASSAY_OK : assay_fail_memory(run->context, "a projection");
     for (size_t s = 0; s < samples && status == ASSAY_OK; s++) {
         if (hemisphere && directions[s].z < 0.0) {
             continue;
@@ -58,7 +57,7 @@ static assay_status fill_bounds(const stage_run *run, const assay_basis *basis,
     }
     for (size_t k = 0; k < channels * count && status == ASSAY_OK; k++) {
         const tracked sum = tracked_sum_of(r, &sums[k]);
-        bounds[k] = tracked_div(r, sum, tracked_exact((double)samples)).e +
+        bounds[k]         = tracked_div(r, sum, tracked_exact((double)samples)).e +
                     r->u * sums[k].size / (double)samples; /* or each term is divided */
     }
     assay_release(run->context, functions);
@@ -69,7 +68,7 @@ static assay_status fill_bounds(const stage_run *run, const assay_basis *basis,
 
 static assay_status project(stage_run *run, const assay_basis *basis)
 {
-    const size_t  samples  = run->in[DIRECTION].rows, channels = run->in[VALUE].columns;
+    const size_t  samples = run->in[DIRECTION].rows, channels = run->in[VALUE].columns;
     const size_t  count    = assay_basis_count(basis);
     assay_vec3   *d        = NULL;
     stage_output *out      = NULL;
@@ -83,9 +82,9 @@ static assay_status project(stage_run *run, const assay_basis *basis)
     status              = status ? status : stage_output_make(run, 0, 0, channels, count, &out);
     if (status == ASSAY_OK) {
         variance = assay_allocate(run->context, channels * count, sizeof *variance);
-        status   = variance ? assay_basis_project_samples(
-                                basis, run->context, samples, d, run->in[PDF].values,
-                                run->in[VALUE].values, (int)channels, out->values, variance)
+        status   = variance ? assay_basis_project_samples(basis, run->context, samples, d,
+                                                          run->in[PDF].values, run->in[VALUE].values,
+                                                          (int)channels, out->values, variance)
                             : assay_fail_memory(run->context, "a projection");
     }
     if (status == ASSAY_OK && run->bounded) {
@@ -102,11 +101,11 @@ static assay_status project(stage_run *run, const assay_basis *basis)
 
 static assay_status run_project(stage_run *run)
 {
-    assay_basis *basis = NULL;
-    assay_status status =
-        assay_basis_create(run->context, (assay_basis_kind)assay_params_choice(run->params, "basis"),
-                           assay_params_int(run->params, "order"),
-                           (assay_convention)assay_params_choice(run->params, "convention"), &basis);
+    assay_basis *basis  = NULL;
+    assay_status status = assay_basis_create(
+        run->context, (assay_basis_kind)assay_params_choice(run->params, "basis"),
+        assay_params_int(run->params, "order"),
+        (assay_convention)assay_params_choice(run->params, "convention"), &basis);
     status = status ? status : project(run, basis);
     assay_basis_destroy(basis);
     return status;

@@ -69,12 +69,11 @@ static assay_status check_gradients(const stage_run *run, assay_gradients used)
     const bool translation = used == ASSAY_GRADIENTS_TRANSLATION || used == ASSAY_GRADIENTS_BOTH;
     if ((rotation && !run->in[RECORDS_ROTATION].values) ||
         (translation && !run->in[RECORDS_TRANSLATION].values)) {
-        return assay_fail(run->context, ASSAY_ERR_FORMAT,
-                          "%s: bundle: 'gradients' is %s, but records/%s_gradient is not listed",
-                          assay_bundle_path(run->bundle),
-                          assay_params_text(run->params, "gradients"),
-                          rotation && !run->in[RECORDS_ROTATION].values ? "rotation"
-                                                                        : "translation");
+        return assay_fail(
+            run->context, ASSAY_ERR_FORMAT,
+            "%s: bundle: 'gradients' is %s, but records/%s_gradient is not listed",
+            assay_bundle_path(run->bundle), assay_params_text(run->params, "gradients"),
+            rotation && !run->in[RECORDS_ROTATION].values ? "rotation" : "translation");
     }
     return ASSAY_OK;
 }
@@ -91,11 +90,11 @@ static assay_status take(stage_run *run, bool said, const assay_vec3 *normals, s
     const stage_table *in = run->in;
     for (size_t i = 0; i < made->count; i++) {
         assay_record *record = &made->records[i];
-        *record              = (assay_record){.position = stage_vec3(in[RECORDS_POSITION].values + 3 * i),
-                                              .normal   = normals[i],
-                                              .radius   = in[RECORDS_RADIUS].values[i],
-                                              .mean     = INFINITY,
-                                              .nearest  = INFINITY};
+        *record = (assay_record){.position = stage_vec3(in[RECORDS_POSITION].values + 3 * i),
+                                 .normal   = normals[i],
+                                 .radius   = in[RECORDS_RADIUS].values[i],
+                                 .mean     = INFINITY,
+                                 .nearest  = INFINITY};
         if (!(record->radius > 0.0)) {
             return stage_fail_value(run, RECORDS_RADIUS, i, 0, "a radius that is not > 0");
         }

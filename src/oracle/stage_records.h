@@ -7,8 +7,8 @@
 #include "oracle/stage.h"
 #include "record/record_store.h"
 
-/* The first inputs of such a stage, in this order; those of light may be missing where the stage has
- * none of them. */
+/* The first inputs of such a stage, in this order; those of light may be missing where the stage
+ * has none of them. */
 enum {
     RECORDS_POSITION,
     RECORDS_NORMAL,
@@ -29,11 +29,16 @@ enum {
     }
 
 #define STAGE_RECORD_ARRAYS                                                                        \
-    STAGE_RECORD_SITE_ARRAYS,                                                                      \
-        {"records/irradiance", "W/m2", "R G B", "record", "indirect irradiance", false, false,     \
+    STAGE_RECORD_SITE_ARRAYS, {"records/irradiance",  "W/m2", "R G B", "record",                   \
+                               "indirect irradiance", false,  false,   false},                     \
+        {"records/rotation_gradient",                                                              \
+         "W/(m2 rad)",                                                                             \
+         "Rx Ry Rz Gx Gy Gz Bx By Bz",                                                             \
+         "record",                                                                                 \
+         "E(n') = E + (n x n') . g",                                                               \
+         true,                                                                                     \
+         false,                                                                                    \
          false},                                                                                   \
-        {"records/rotation_gradient", "W/(m2 rad)", "Rx Ry Rz Gx Gy Gz Bx By Bz", "record",        \
-         "E(n') = E + (n x n') . g", true, false, false},                                          \
     {                                                                                              \
         "records/translation_gradient", "W/m3", "Rx Ry Rz Gx Gy Gz Bx By Bz", "record",            \
             "E(p') = E + (p' - p) . t", true, false, false                                         \
@@ -65,7 +70,7 @@ typedef struct {
     assay_record_rules rules;
     size_t             count;
     assay_record      *records;
-    bool               exact; /* equal numbers are equal to the candidate (record_bound.h)   */
+    bool               exact;      /* equal numbers are equal to the candidate (record_bound.h)   */
     double             coordinate; /* of points: none is larger                              */
     assay_octree      *octree;     /* of reaches that nothing outside contributes            */
 } stage_records;

@@ -1,10 +1,12 @@
-/* stage_rotate.c - stage `rotate`: given coefficients turned, by Euler's angles or by a given matrix.
+/* stage_rotate.c - stage `rotate`: given coefficients turned, by Euler's angles or by a given
+ * matrix.
  *
  * Bounds.  With a matrix that is given: its sums.  Of SH by angles: what is applied is a product of
  * at most five orthogonal matrices of size 2 l + 1 a band (the matrix itself; or turns about z and
- * constant quarter turns), each with entries that are rounded, times a vector: in the Euclidean norm
- * (2 l + 5) u sqrt(2 l + 1) |c| each, as the matrix of absolute values has at most that norm; and
- * angles that are off turn band l by at most l times as much.  HSH by angles are not analysed. */
+ * constant quarter turns), each with entries that are rounded, times a vector: in the Euclidean
+ * norm (2 l + 5) u sqrt(2 l + 1) |c| each, as the matrix of absolute values has at most that norm;
+ * and angles that are off turn band l by at most l times as much.  HSH by angles are not analysed.
+ */
 #include <string.h>
 
 #include "assay/basis.h"
@@ -110,9 +112,9 @@ static void multiply(size_t count, const double *matrix, const double *in, doubl
 static assay_status turn_rows(stage_run *run, const assay_basis *basis, const double *matrix)
 {
     const size_t  rows = run->in[IN].rows, count = assay_basis_count(basis);
-    const bool    given = run->in[MATRIX].values != NULL;
-    const bool    sh    = assay_basis_kind_of(basis) == ASSAY_BASIS_SH;
-    stage_output *out   = NULL;
+    const bool    given  = run->in[MATRIX].values != NULL;
+    const bool    sh     = assay_basis_kind_of(basis) == ASSAY_BASIS_SH;
+    stage_output *out    = NULL;
     assay_status  status = stage_output_make(run, 0, 0, rows, count, &out);
     for (size_t i = 0; i < rows && status == ASSAY_OK; i++) {
         const double *in = run->in[IN].values + i * count;
@@ -156,12 +158,11 @@ static assay_status turn(stage_run *run, const assay_basis *basis)
 
 static assay_status run_rotate(stage_run *run)
 {
-    assay_basis *basis = NULL;
-    const bool   sh    = assay_params_choice(run->params, "basis") == 0;
-    assay_status status =
-        assay_basis_create(run->context, sh ? ASSAY_BASIS_SH : ASSAY_BASIS_HSH,
-                           assay_params_int(run->params, "order"),
-                           (assay_convention)assay_params_choice(run->params, "convention"), &basis);
+    assay_basis *basis  = NULL;
+    const bool   sh     = assay_params_choice(run->params, "basis") == 0;
+    assay_status status = assay_basis_create(
+        run->context, sh ? ASSAY_BASIS_SH : ASSAY_BASIS_HSH, assay_params_int(run->params, "order"),
+        (assay_convention)assay_params_choice(run->params, "convention"), &basis);
     status = status ? status : turn(run, basis);
     assay_basis_destroy(basis);
     return status;

@@ -1,7 +1,7 @@
 /* stage_run.c - from a bundle to a stage's arrays.
  *
- * Invariant: what a stage sees is finite, or is what its table allows; rows are judged by the stage,
- * which knows what they are. */
+ * Invariant: what a stage sees is finite, or is what its table allows; rows are judged by the
+ * stage, which knows what they are. */
 #include <stdio.h>
 #include <string.h>
 
@@ -75,9 +75,8 @@ static size_t words_in(const char *text)
     return words;
 }
 
-/* The listed name that stands for a name with '#': the one with the largest number. */
-static bool find_name(const assay_bundle_reader *bundle, const char *pattern,
-                      char name[ASSAY_BUNDLE_NAME])
+bool stage_find_name(const assay_bundle_reader *bundle, const char *pattern,
+                     char name[ASSAY_BUNDLE_NAME])
 {
     const char *mark = strchr(pattern, '#');
     bool        any  = false;
@@ -98,14 +97,14 @@ bool stage_can_run(const oracle_stage *stage, const assay_bundle_reader *bundle)
 {
     for (const assay_stage_array *input = stage->info.inputs; input->name; input++) {
         char name[ASSAY_BUNDLE_NAME];
-        if (!input->optional && !find_name(bundle, input->name, name)) {
+        if (!input->optional && !stage_find_name(bundle, input->name, name)) {
             return false;
         }
     }
     return true;
 }
 
-static double roundoff_of(const assay_bundle_entry *entry)
+double stage_roundoff_of(const assay_bundle_entry *entry)
 {
     return strcmp(entry->dtype, "float16") == 0   ? 0x1p-11
            : strcmp(entry->dtype, "float32") == 0 ? 0x1p-24
@@ -154,7 +153,7 @@ static assay_status read_input(stage_run *run, int input)
     const assay_stage_array *desc = &run->stage->info.inputs[input];
     stage_table             *t    = &run->in[input];
     assay_bundle_entry       entry;
-    if (!find_name(run->bundle, desc->name, t->name)) {
+    if (!stage_find_name(run->bundle, desc->name, t->name)) {
         return desc->optional
                    ? ASSAY_OK
                    : assay_fail(run->context, ASSAY_ERR_FORMAT,
@@ -168,16 +167,16 @@ static assay_status read_input(stage_run *run, int input)
                           "%s: bundle: '%s' is in '%.40s', not in '%s'",
                           assay_bundle_path(run->bundle), t->name, entry.unit, desc->unit);
     }
-    status = status ? status
-                    : assay_bundle_read_array(run->bundle, t->name, desc->channels,
-                                              &run->tables[input]);
+    status =
+        status ? status
+               : assay_bundle_read_array(run->bundle, t->name, desc->channels, &run->tables[input]);
     if (status != ASSAY_OK) {
         return status;
     }
     t->values   = assay_array_values(run->tables[input]);
     t->rows     = assay_array_rows(run->tables[input]);
     t->columns  = assay_array_columns(run->tables[input]);
-    t->roundoff = roundoff_of(&entry);
+    t->roundoff = stage_roundoff_of(&entry);
     t->unit     = entry.unit;
     if (desc->channels && t->columns != words_in(desc->channels)) {
         return stage_fail_columns(run, input, words_in(desc->channels));
@@ -197,8 +196,10 @@ assay_status stage_output_make(stage_run *run, int index, int number, size_t row
                           run->stage->info.name);
     }
     stage_output *out = &run->out[run->out_count];
-    *out              = (stage_output){
-                     .unit = desc->unit ? desc->unit : run->in[0].unit, .rows = rows, .columns = columns};
+    *out              = (stage_output){.unit     = desc->unit ? desc->unit : run->in[0].unit,
+                                       .channels = desc->channels,
+                                       .rows     = rows,
+                                       .columns  = columns};
     if (mark) {
         snprintf(out->name, sizeof out->name, "%.*s%d%s", (int)(mark - desc->name), desc->name,
                  number, mark + 1);
@@ -241,10 +242,9 @@ static rounding rounding_of(const stage_run *run, assay_precision precision)
 static assay_status start(stage_run *run, const assay_precision *precision, int override_count,
                           const char *const *overrides)
 {
-    const stage_table none   = {.values = NULL};
-    assay_status      status =
-        assay_params_create(run->context, run->stage->info.params, &run->params);
-    status = status ? status : take_manifest(run, run->params);
+    const stage_table none = {.values = NULL};
+    assay_status status = assay_params_create(run->context, run->stage->info.params, &run->params);
+    status              = status ? status : take_manifest(run, run->params);
     status = status ? status : take_overrides(run, run->params, override_count, overrides);
     for (int i = 0; i < STAGE_MOST_ARRAYS; i++) {
         run->in[i] = none;

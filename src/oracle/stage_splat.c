@@ -114,7 +114,7 @@ static assay_status take_batches(job_data *job)
     const double       splat_a = assay_params_real(run->params, "splat_a");
     const bool         twice   = assay_params_choice(run->params, "variant") == 1;
     const bool         shrinks = assay_params_bool(run->params, "neighbour_clamp");
-    job->batches = assay_allocate(run->context, count, sizeof *job->batches);
+    job->batches               = assay_allocate(run->context, count, sizeof *job->batches);
     if (!job->batches) {
         return assay_fail_memory(run->context, "batches");
     }
@@ -134,9 +134,9 @@ static assay_status take_batches(job_data *job)
             b->a     = last && splat_a > 0.0 ? splat_a : job->records->rules.a;
             assay_status status =
                 stage_output_make(run, OUT_WEIGHT, (int)k, job->pixels, 1, &b->weight);
-            status = status ? status
-                            : stage_output_make(run, OUT_RADIANCE, (int)k, job->pixels, 3,
-                                                &b->radiance);
+            status =
+                status ? status
+                       : stage_output_make(run, OUT_RADIANCE, (int)k, job->pixels, 3, &b->radiance);
             if (status != ASSAY_OK) {
                 return status;
             }
@@ -240,8 +240,7 @@ static assay_status bound_pixel(const job_data *job, const batch *b, size_t pixe
     rules.a                  = b->a;
     for (size_t i = 0; i < near->count && near->items[i] < b->end; i++) {
         const assay_record *record = &job->records->records[near->items[i]];
-        const weight_bound  w =
-            record_weight_bound(r, job->records->exact, record, &rules, p, n);
+        const weight_bound  w = record_weight_bound(r, job->records->exact, record, &rules, p, n);
         if (w.member != BOUND_OUT) {
             tracked      said[3];
             const double counts = assay_record_weight(record, &rules, p, n);
@@ -334,10 +333,9 @@ static assay_status run_splat(stage_run *run)
     return status == ASSAY_ERR_MEMORY ? assay_fail_memory(run->context, "splatting") : status;
 }
 
-const oracle_stage stage_splat = {
-    .info = {.name    = "splat",
-             .summary = "given records splatted on a given G-buffer",
-             .params  = PARAMS,
-             .inputs  = INPUTS,
-             .outputs = OUTPUTS},
-    .run  = run_splat};
+const oracle_stage stage_splat = {.info = {.name    = "splat",
+                                           .summary = "given records splatted on a given G-buffer",
+                                           .params  = PARAMS,
+                                           .inputs  = INPUTS,
+                                           .outputs = OUTPUTS},
+                                  .run  = run_splat};

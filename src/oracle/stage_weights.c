@@ -90,11 +90,10 @@ static assay_status weigh_all(stage_run *run, stage_records *records)
             return stage_fail_rows(run, i, points, "one a point, as of query/position");
         }
     }
-    assay_status status = check_pairs(run, records->count);
-    status = status ? status : stage_unit_vectors(run, QUERY_NORMAL, 0, &normals);
-    records->exact = run->rounding.given <= run->rounding.u;
-    const size_t columns =
-        run->in[QUERY_RECORD].values || records->count == 0 ? 1 : records->count;
+    assay_status status  = check_pairs(run, records->count);
+    status               = status ? status : stage_unit_vectors(run, QUERY_NORMAL, 0, &normals);
+    records->exact       = run->rounding.given <= run->rounding.u;
+    const size_t columns = run->in[QUERY_RECORD].values || records->count == 0 ? 1 : records->count;
     status      = status ? status : stage_output_make(run, 0, 0, points, columns, &job.out);
     job.normals = normals;
     status      = status ? status
@@ -113,10 +112,9 @@ static assay_status run_weights(stage_run *run)
     return status;
 }
 
-const oracle_stage stage_weights = {
-    .info = {.name    = "weights",
-             .summary = "weights of given records at given points",
-             .params  = PARAMS,
-             .inputs  = INPUTS,
-             .outputs = OUTPUTS},
-    .run  = run_weights};
+const oracle_stage stage_weights = {.info = {.name    = "weights",
+                                             .summary = "weights of given records at given points",
+                                             .params  = PARAMS,
+                                             .inputs  = INPUTS,
+                                             .outputs = OUTPUTS},
+                                    .run  = run_weights};
