@@ -277,10 +277,12 @@ assay_status assay_verify_bundle(assay_context *context, const char *candidate,
     verification v = {
         .context = context, .scene = scene, .precision = precision, .verdict = verdict};
     assay_status status = assay_bundle_open(context, candidate, &v.candidate);
-    status              = status ? status : assay_bundle_open(context, reference, &v.reference);
-    status              = status ? status : bundle_match_making(context, v.candidate, v.reference);
-    status              = status ? status : bundle_match_arrays(context, v.candidate, v.reference);
-    status              = status ? status : judge_stages(&v);
+    if (status == ASSAY_OK && reference) {
+        status = assay_bundle_open(context, reference, &v.reference);
+        status = status ? status : bundle_match_making(context, v.candidate, v.reference);
+    }
+    status = status ? status : bundle_match_arrays(context, v.candidate, v.reference);
+    status = status ? status : judge_stages(&v);
     assay_bundle_close(v.candidate);
     assay_bundle_close(v.reference);
     return status;

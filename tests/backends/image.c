@@ -1,5 +1,5 @@
 /* image.c - OpenEXR in, by OpenEXRCore: whole scan lines, decoded to floats chunk by chunk. */
-#include <openexr.h>
+#include <OpenEXR/openexr.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
