@@ -52,6 +52,9 @@ static void questions(const char *reference, const char *candidate)
     bundle *from = bundle_open(reference), *to = bundle_create(candidate, from);
     records r = records_take(from, to);
     records_ask(&r, to);
+    if (bundle_has(from, "radiance_records/coefficients")) {
+        harmonics_of_records(from, to);
+    }
     records_release(&r);
     bundle_close(to);
     bundle_close(from);

@@ -15,6 +15,7 @@
 #include "harmonics_body.h"
 
 enum { ORDER = HARMONICS_ORDER, COUNT = ORDER * ORDER, CHANNELS = 3, SAMPLES = 600 };
+enum { MOST_COUNT = 400 };
 
 static const float TWO_PI = 6.28318531f;
 
@@ -47,22 +48,23 @@ static void shine(const table *directions, float ground, table *values)
 }
 
 /* Stage `project`: a row a channel. */
-static table project(bool hemisphere, const table *directions, const table *pdf,
+static table project(int order, bool hemisphere, const table *directions, const table *pdf,
                      const table *values)
 {
-    table coefficients = table_make(CHANNELS, COUNT);
+    const size_t count        = (size_t)(order * order);
+    table        coefficients = table_make(CHANNELS, count);
     for (size_t i = 0; i < directions->rows; i++) {
-        float functions[COUNT];
-        float_evaluate(ORDER, hemisphere, table_row(directions, i), functions);
+        float functions[MOST_COUNT];
+        float_evaluate(order, hemisphere, table_row(directions, i), functions);
         for (size_t c = 0; c < CHANNELS; c++) {
             const float density = IS_PLANTED(SOLID_ANGLE_LEFT_OUT) ? 1.0f : pdf->values[i];
             const float share   = table_row(values, i)[c] / density;
-            for (size_t k = 0; k < COUNT; k++) {
+            for (size_t k = 0; k < count; k++) {
                 table_row(&coefficients, c)[k] += share * functions[k];
             }
         }
     }
-    for (size_t k = 0; k < CHANNELS * COUNT; k++) {
+    for (size_t k = 0; k < CHANNELS * count; k++) {
         coefficients.values[k] /= (float)directions->rows;
     }
     return coefficients;
@@ -75,13 +77,13 @@ static table copy_of(const table *t)
     return copy;
 }
 
-static table sample_and_project(bool hemisphere, float ground, bundle *to)
+static table sample_and_project(int order, bool hemisphere, float ground, bundle *to)
 {
     table directions = table_make(SAMPLES, 3), pdf = table_make(SAMPLES, 1);
     table values = table_make(SAMPLES, CHANNELS);
     spread(hemisphere, &directions, &pdf);
     shine(&directions, ground, &values);
-    table coefficients = project(hemisphere, &directions, &pdf, &values);
+    table coefficients = project(order, hemisphere, &directions, &pdf, &values);
     if (to) {
         table written = copy_of(&coefficients);
         bundle_write(to, "project/direction", "", &directions);
@@ -142,7 +144,8 @@ static table turn(const table *in, bundle *to)
     for (int i = 0; i < 3; i++) {
         const char *text = bundle_text(to, names[i]);
         angles[i]        = strtod(text ? text : "0", NULL);
-        angles[i]        = IS_PLANTED(TURN_BACKWARDS) && i == 1 ? -angles[i] : angles[i];
+        angles[i] *= IS_PLANTED(ANGLE_ROUGH) ? 1.00005 : 1.0;
+        angles[i] = IS_PLANTED(TURN_BACKWARDS) && i == 1 ? -angles[i] : angles[i];
     }
     table d   = table_of_turn(ORDER, angles);
     table out = multiply(&d, IS_PLANTED(TURN_TRANSPOSED), in), given = copy_of(in);
@@ -155,38 +158,52 @@ static table turn(const table *in, bundle *to)
 
 /* ---- product ---- */
 
-/* Stage `reflect`: a point, whose light and BRDF are rows of CHANNELS times COUNT numbers. */
-static void reflect(const table *light, const table *lobe, bundle *to)
+/* Stage `reflect`: points whose light is a row of CHANNELS times count numbers, and one lobe. */
+static void reflect(table *light, const table *lobe, bundle *to)
 {
-    table a = table_make(1, CHANNELS * COUNT), b = table_make(1, CHANNELS * COUNT);
-    table out = table_make(1, CHANNELS);
-    memcpy(a.values, light->values, CHANNELS * COUNT * sizeof(float));
-    memcpy(b.values, lobe->values, CHANNELS * COUNT * sizeof(float));
-    for (size_t c = 0; c < CHANNELS; c++) {
-        for (size_t k = 0; k < COUNT; k++) {
-            const bool   mixed = IS_PLANTED(COEFFICIENTS_BY_FUNCTION);
-            const size_t at    = mixed ? CHANNELS * k + c : COUNT * c + k;
-            out.values[c] += a.values[at] * b.values[at];
+    const size_t count = lobe->columns;
+    table brdf = table_make(light->rows, light->columns), out = table_make(light->rows, CHANNELS);
+    for (size_t i = 0; i < light->rows; i++) {
+        memcpy(table_row(&brdf, i), lobe->values, light->columns * sizeof(float));
+        for (size_t c = 0; c < CHANNELS; c++) {
+            for (size_t k = 0; k < count; k++) {
+                const bool   mixed = IS_PLANTED(COEFFICIENTS_BY_FUNCTION);
+                const size_t at    = mixed ? CHANNELS * k + c : count * c + k;
+                table_row(&out, i)[c] += table_row(light, i)[at] * table_row(&brdf, i)[at];
+            }
         }
     }
-    bundle_write(to, "reflect/light", "W/(m2 sr)", &a);
-    bundle_write(to, "reflect/brdf", "1/sr", &b);
+    bundle_write(to, "reflect/light", "W/(m2 sr)", light);
+    bundle_write(to, "reflect/brdf", "1/sr", &brdf);
     bundle_write(to, "reflect/radiance", "W/(m2 sr)", &out);
+}
+
+void harmonics_of_records(const bundle *from, bundle *to)
+{
+    table light = bundle_read(from, "radiance_records/coefficients", "");
+    table lobe  = sample_and_project((int)bundle_number(from, "order"), true, 0.0f, NULL);
+    if (light.columns != CHANNELS * lobe.columns) {
+        fail("radiance_records/coefficients: not of the order that the manifest says");
+    }
+    reflect(&light, &lobe, to);
+    table_release(&lobe);
 }
 
 void harmonics_of_hemisphere(bundle *to)
 {
-    table light = sample_and_project(true, 0.25f, to);
-    table lobe  = sample_and_project(true, 0.0f, NULL);
-    reflect(&light, &lobe, to);
+    table light = sample_and_project(ORDER, true, 0.25f, to);
+    table lobe  = sample_and_project(ORDER, true, 0.0f, NULL);
+    table point = table_make(1, CHANNELS * COUNT);
+    memcpy(point.values, light.values, CHANNELS * COUNT * sizeof(float));
     convert(true, &light, to);
+    reflect(&point, &lobe, to);
     table_release(&light);
     table_release(&lobe);
 }
 
 void harmonics_of_sphere(bundle *to)
 {
-    table light  = sample_and_project(false, 0.25f, to);
+    table light  = sample_and_project(ORDER, false, 0.25f, to);
     table turned = turn(&light, to);
     convert(false, &turned, to);
     table_release(&light);

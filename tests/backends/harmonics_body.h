@@ -21,7 +21,7 @@ static void NAME(column)(int order, int m, REAL t, REAL cosine, REAL sine, REAL 
     for (int l = m; l < order; l++) {
         out[l * l + l + m] = value * cosine;
         if (m > 0) {
-            out[l * l + l - m] = value * sine;
+            out[l * l + l - m] = IS_PLANTED(SIGN_OF_SINES) ? -value * sine : value * sine;
         }
         const REAL n = (REAL)(l + 1), k = (REAL)m;
         const REAL a    = ROOT((4 * n * n - 1) / (n * n - k * k));

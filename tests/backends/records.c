@@ -96,7 +96,7 @@ void record_say(const records *rules, const record *k, vec position, vec normal,
             change += IS_PLANTED(TRANSLATION_SIGN) ? -by : by;
         }
         light  = IS_PLANTED(RELATIVE_GRADIENTS) ? light * (1.0f + change) : light + change;
-        out[c] = rules->clamped && light < 0.0f ? 0.0f : light;
+        out[c] = rules->clamped && !IS_PLANTED(CLAMP_DROPPED) && light < 0.0f ? 0.0f : light;
     }
 }
 
@@ -140,10 +140,11 @@ static void ask_at(const records *r, vec position, vec normal, float *weights, f
         float said[3];
         weights[i] = record_weight(r, &r->list[i], position, normal);
         if (weights[i] > 0.0f) {
+            const float weight = IS_PLANTED(ALL_AT_ONE_WEIGHT) ? 1.0f : weights[i];
             record_say(r, &r->list[i], position, normal, said);
-            sum += weights[i];
+            sum += weight;
             for (int c = 0; c < 3; c++) {
-                light[c] += weights[i] * said[c];
+                light[c] += weight * said[c];
             }
         }
     }

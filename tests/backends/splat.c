@@ -12,7 +12,7 @@
 
 enum { TILE = 8, SUMS = 4 };
 
-static const float INV_PI = 0.318309886f;
+static const float INV_PI = IS_PLANTED(PI_ROUGH) ? 1.0f / 3.14f : 0.318309886f;
 
 typedef struct {
     const records *records;
@@ -74,7 +74,8 @@ static float distance_from_tile(const buffer *b, vec centre, const size_t tile[4
 
 static void splat_record(const buffer *b, const record *k)
 {
-    const float  reach = b->records->a * k->radius * 1.001f;
+    const float  spare = IS_PLANTED(REACH_TOO_SHORT) ? 0.8f : 1.001f;
+    const float  reach = b->records->a * k->radius * spare;
     const size_t wider = IS_PLANTED(DOUBLE_SPLAT) ? TILE + 1 : TILE;
     for (size_t y = 0; y < b->height; y += TILE) {
         for (size_t x = 0; x < b->width; x += TILE) {
