@@ -6,6 +6,7 @@
 #define ASSAY_REPLAY_H
 
 #include "assay/params.h"
+#include "assay/precision.h"
 #include "assay/scene.h"
 #include "assay/verdict.h"
 
@@ -18,7 +19,7 @@ typedef struct {
     const char *name;     /* "records/position"; '#' in it stands for a whole number; NULL ends a
                              table                                                            */
     const char *unit;     /* as the manifest has it; "" where it has none; NULL: any, and an output
-                             has that of the first input                                      */
+                             has that of the first such input                                    */
     const char *channels; /* "X Y Z": of an image, and how many columns a table has; NULL: any */
     const char *rows;     /* "record": what a row is, in words                                */
     const char *what;     /* in words                                                         */
@@ -37,16 +38,6 @@ typedef struct {
 ASSAY_API int              assay_stage_count(void);
 ASSAY_API assay_stage_info assay_stage_at(int index);
 
-/* What a candidate computes with: IEEE 754 binary16, binary32, binary64. */
-typedef enum {
-    ASSAY_PRECISION_HALF,
-    ASSAY_PRECISION_FLOAT,
-    ASSAY_PRECISION_DOUBLE
-} assay_precision;
-
-/* "half", "float", "double".  Errors: ARGUMENT. */
-ASSAY_API assay_status assay_precision_find(const char *name, assay_precision *precision_out);
-
 typedef struct {
     const char            *stage;
     const char            *in, *out; /* bundles; out is made                                 */
@@ -64,9 +55,9 @@ ASSAY_API assay_status assay_replay(assay_context *context, const assay_replay_o
  * adds a finding for each array.  Errors: ARGUMENT (candidate and reference are of other scenes,
  * parameters, cameras: the message names what), FORMAT (an array that the reference lacks, of
  * another shape, dtype or unit; a broken file), DOMAIN (NaN), and the others of assay_replay; the
- * verdict is then as it was.
+ * verdict is then worthless.  Arrays that no stage judges stand in its setting "not judged".
  *
- * reference NULL: nothing is said of the inputs themselves; for a stage that is tested alone, on
+ * reference NULL: nothing is said of the inputs themselves; for stages that are tested alone, on
  * inputs that no render made. */
 ASSAY_API assay_status assay_verify_bundle(assay_context *context, const char *candidate,
                                            const char *reference, const assay_scene *scene,

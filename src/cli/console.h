@@ -48,5 +48,6 @@ int cli_methods(int count, char **argv);
 int cli_diff(int count, char **argv);
 int cli_replay(int count, char **argv);
 int cli_basis(int count, char **argv);
+int cli_verify(int count, char **argv);
 
 #endif

@@ -270,14 +270,20 @@ assay_status assay_image_decode(assay_context *context, const uint8_t *bytes, si
                       "%s: neither an OpenEXR nor a Radiance (.hdr) image", name);
 }
 
-assay_status assay_image_read(assay_context *context, const char *path, assay_image **image_out)
+assay_status assay_image_read_channels(assay_context *context, const char *path,
+                                       const char *const *wanted, assay_image **image_out)
 {
     uint8_t     *bytes  = NULL;
     size_t       count  = 0;
     assay_status status = assay_read_file(context, path, ASSAY_IMAGE_MAX_FILE, &bytes, &count);
     if (status == ASSAY_OK) {
-        status = assay_image_decode(context, bytes, count, path, NULL, image_out);
+        status = assay_image_decode(context, bytes, count, path, wanted, image_out);
         assay_release(context, bytes);
     }
     return status;
+}
+
+assay_status assay_image_read(assay_context *context, const char *path, assay_image **image_out)
+{
+    return assay_image_read_channels(context, path, NULL, image_out);
 }

@@ -37,11 +37,10 @@ static bool is_own_key(const char *key)
 static assay_status describe(const stage_run *run, const assay_precision *bounds,
                              assay_bundle *bundle)
 {
-    static const char *const      names[] = {"half", "float", "double"};
-    const assay_param_desc *const table   = run->stage->info.params;
+    const assay_param_desc *const table = run->stage->info.params;
     assay_status status = assay_bundle_describe(bundle, "stage", run->stage->info.name);
     if (status == ASSAY_OK && bounds) {
-        status = assay_bundle_describe(bundle, "bounds", names[*bounds]);
+        status = assay_bundle_describe(bundle, "bounds", assay_precision_name(*bounds));
     }
     for (const assay_param_desc *p = table; p->name && status == ASSAY_OK; p++) {
         status = assay_bundle_describe(bundle, p->name, assay_params_text(run->params, p->name));

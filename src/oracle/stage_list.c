@@ -34,15 +34,3 @@ const oracle_stage *assay_stage_find(const char *name)
 int assay_stage_count(void) { return (int)(sizeof assay_stages / sizeof assay_stages[0]) - 1; }
 
 assay_stage_info assay_stage_at(int index) { return assay_stages[index]->info; }
-
-assay_status assay_precision_find(const char *name, assay_precision *precision_out)
-{
-    static const char *const names[] = {"half", "float", "double"};
-    for (int i = 0; i < 3; i++) {
-        if (strcmp(names[i], name) == 0) {
-            *precision_out = (assay_precision)i;
-            return ASSAY_OK;
-        }
-    }
-    return ASSAY_ERR_ARGUMENT;
-}

@@ -186,6 +186,18 @@ static assay_status read_input(stage_run *run, int input)
 
 /* ---- outputs ---- */
 
+/* An output without a unit has that of the first input that may have any. */
+static const char *unit_of(const stage_run *run, const assay_stage_array *output)
+{
+    const assay_stage_array *inputs = run->stage->info.inputs;
+    for (int i = 0; !output->unit && inputs[i].name; i++) {
+        if (!inputs[i].unit && run->in[i].unit) {
+            return run->in[i].unit;
+        }
+    }
+    return output->unit ? output->unit : "";
+}
+
 assay_status stage_output_make(stage_run *run, int index, int number, size_t rows, size_t columns,
                                stage_output **output_out)
 {
@@ -196,10 +208,8 @@ assay_status stage_output_make(stage_run *run, int index, int number, size_t row
                           run->stage->info.name);
     }
     stage_output *out = &run->out[run->out_count];
-    *out              = (stage_output){.unit     = desc->unit ? desc->unit : run->in[0].unit,
-                                       .channels = desc->channels,
-                                       .rows     = rows,
-                                       .columns  = columns};
+    *out              = (stage_output){
+                     .unit = unit_of(run, desc), .channels = desc->channels, .rows = rows, .columns = columns};
     if (mark) {
         snprintf(out->name, sizeof out->name, "%.*s%d%s", (int)(mark - desc->name), desc->name,
                  number, mark + 1);

@@ -134,6 +134,13 @@ assay_status assay_verdict_add(assay_verdict *verdict, const assay_finding *find
     return ASSAY_OK;
 }
 
+void assay_verdict_truncate(assay_verdict *verdict, int count)
+{
+    while (verdict->count > (size_t)count) {
+        release_finding(verdict->context, &verdict->findings[--verdict->count]);
+    }
+}
+
 static assay_verdict_setting *find_setting(const assay_verdict *verdict, const char *key)
 {
     for (size_t i = 0; i < verdict->setting_count; i++) {

@@ -18,6 +18,9 @@ struct assay_verdict {
     size_t                 setting_count, setting_capacity;
 };
 
+/* Takes away all findings from this one on. */
+void assay_verdict_truncate(assay_verdict *verdict, int count);
+
 /* "R, test welch" or "records/irradiance.X, test rounding". */
 void assay_finding_add_name(assay_text_builder *text, const assay_finding *finding);
 /* " at pixel (3, 4)", " at row 7, column 2", " in the tile of 16 x 16 pixels at (0, 32)", or "". */

@@ -80,33 +80,38 @@ static double ulps_of(assay_precision precision, double mine, double theirs)
     return fabs(theirs - mine) / ldexp(1.0, exponent - digits[precision] + 1);
 }
 
-static assay_verdict_kind judge(const comparison *c)
+/* Numbers that are 0 say nothing of how wide bounds are. */
+static bool is_blind(const comparison *c)
 {
     size_t sized = 0;
     for (size_t i = 0; i < c->count; i++) {
-        sized += c->out->values[i] != 0.0;
+        sized += c->out->values[i] != 0.0 && !isnan(c->out->bounds[i]);
     }
-    const bool blind = c->unknown > 0 || (sized > 0 && c->vacuous == sized);
-    return c->beyond > 0            ? ASSAY_VERDICT_FAIL
-           : blind || c->count == 0 ? ASSAY_VERDICT_CANNOT_TELL
-                                    : ASSAY_VERDICT_PASS;
+    return c->count == 0 || 2 * c->unknown > c->count || (sized > 0 && c->vacuous == sized);
+}
+
+static assay_verdict_kind judge(const comparison *c)
+{
+    return c->beyond > 0 ? ASSAY_VERDICT_FAIL
+           : is_blind(c) ? ASSAY_VERDICT_CANNOT_TELL
+                         : ASSAY_VERDICT_PASS;
 }
 
 static void describe(const comparison *c, assay_verdict_kind kind, char *words, size_t size)
 {
+    words[0] = '\0';
     if (kind == ASSAY_VERDICT_CANNOT_TELL) {
         snprintf(words, size, "%s",
-                 c->count == 0    ? "the array is empty"
-                 : c->unknown > 0 ? "no bound is known of this array"
-                                  : "all bounds are as large as what they bound: this precision "
-                                    "decides nothing here");
+                 c->count == 0               ? "the array is empty"
+                 : 2 * c->unknown > c->count ? "most of its values have no bound"
+                                             : "all bounds are as large as what they bound: "
+                                               "this precision decides nothing here");
     } else if (kind == ASSAY_VERDICT_FAIL) {
         stage_meaning(c->out->columns, c->count, c->values, c->out->values, words, size);
-    } else if (c->vacuous > 0) {
-        snprintf(words, size, "%zu of %zu values have a bound as large as themselves", c->vacuous,
-                 c->count);
-    } else {
-        words[0] = '\0';
+    } else if (c->unknown + c->vacuous > 0) {
+        snprintf(words, size,
+                 "of %zu values %zu have no bound and %zu one that is as large as themselves",
+                 c->count, c->unknown, c->vacuous);
     }
 }
 
@@ -201,7 +206,10 @@ static assay_status judge_array(const verification *v, const stage_run *run,
                                .values = assay_array_values(table),
                                .stored = stored > roundoffs[v->precision] ? stored : 0.0};
         compare(&c);
-        status = add_finding(v, run->stage->info.name, &c);
+        /* Where nothing is known the array stays among those that were not judged. */
+        if (c.count == 0 || c.unknown < c.count) {
+            status = add_finding(v, run->stage->info.name, &c);
+        }
     }
     assay_array_destroy(table);
     return status;
@@ -258,8 +266,8 @@ static assay_status tell_unjudged(const verification *v)
 
 static assay_status judge_stages(const verification *v)
 {
-    static const char *const names[] = {"half", "float", "double"};
-    assay_status status = assay_verdict_set(v->verdict, "precision", names[v->precision]);
+    assay_status status =
+        assay_verdict_set(v->verdict, "precision", assay_precision_name(v->precision));
     for (int i = 0; assay_stages[i] && status == ASSAY_OK; i++) {
         const oracle_stage *stage = assay_stages[i];
         if ((!stage->info.needs_scene || v->scene) && stage_can_run(stage, v->candidate) &&
