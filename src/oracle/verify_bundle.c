@@ -10,6 +10,7 @@
 #include "oracle/bundle_match.h"
 #include "oracle/stage.h"
 #include "oracle/stage_meaning.h"
+#include "oracle/verify_inputs.h"
 
 typedef struct {
     assay_context       *context;
@@ -249,14 +250,10 @@ static assay_status tell_unjudged(const verification *v)
     size_t used       = 0;
     for (int i = 0; i < assay_bundle_count(v->candidate); i++) {
         assay_bundle_entry entry;
-        bool               judged = false;
         if (assay_bundle_entry_at(v->candidate, i, &entry) != ASSAY_OK) {
             continue;
         }
-        for (int k = 0; k < assay_verdict_count(v->verdict) && !judged; k++) {
-            judged = strcmp(assay_verdict_at(v->verdict, k).array, entry.name) == 0;
-        }
-        if (!judged && used < sizeof text) {
+        if (!verify_is_judged(v->verdict, entry.name) && used < sizeof text) {
             used += (size_t)snprintf(text + used, sizeof text - used, "%s%s", used ? ", " : "",
                                      entry.name);
         }
@@ -274,6 +271,9 @@ static assay_status judge_stages(const verification *v)
             has_output(stage, v->candidate)) {
             status = judge_stage(v, stage);
         }
+    }
+    if (status == ASSAY_OK && v->reference) {
+        status = verify_inputs(v->candidate, v->reference, v->precision, v->verdict);
     }
     return status ? status : tell_unjudged(v);
 }
