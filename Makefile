@@ -15,7 +15,7 @@ SAN     ?=
 # What `make deps` installs (Debian 12).
 DEPS_BUILD := gcc g++ make libembree-dev libopenexr-dev libtinygltf-dev libsleef-dev \
               librandom123-dev libpng-dev libjpeg-dev libcjson-dev libmd-dev
-DEPS_TEST  := libcmocka-dev clang
+DEPS_TEST  := libcmocka-dev clang python3-numpy
 DEPS_LINT  := clang-format clang-tidy cppcheck
 DEPS_REF   := libflint-arb-dev libflint-dev libmpfr-dev
 

@@ -3,6 +3,7 @@
  * Invariant: what a stage sees is finite, or is what its table allows; rows are judged by the
  * stage, which knows what they are. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/alloc.h"
@@ -75,22 +76,35 @@ static size_t words_in(const char *text)
     return words;
 }
 
+/* The number that stands for '#' in a name; -1 where the name is another one. */
+static long number_of(const char *pattern, const char *mark, const char *name)
+{
+    const size_t before = (size_t)(mark - pattern);
+    char        *end    = NULL;
+    if (strncmp(name, pattern, before) != 0 || name[before] < '0' || name[before] > '9') {
+        return -1;
+    }
+    const long number = strtol(name + before, &end, 10);
+    return strcmp(end, mark + 1) == 0 ? number : -1;
+}
+
 bool stage_find_name(const assay_bundle_reader *bundle, const char *pattern,
                      char name[ASSAY_BUNDLE_NAME])
 {
     const char *mark = strchr(pattern, '#');
-    bool        any  = false;
-    for (int number = 0; mark; number++) {
-        char tried[ASSAY_BUNDLE_NAME];
-        snprintf(tried, sizeof tried, "%.*s%d%s", (int)(mark - pattern), pattern, number, mark + 1);
-        if (!assay_bundle_has(bundle, tried)) {
-            return any;
+    long        last = -1;
+    for (int i = 0; mark && i < assay_bundle_count(bundle); i++) {
+        assay_bundle_entry entry;
+        if (assay_bundle_entry_at(bundle, i, &entry) == ASSAY_OK &&
+            number_of(pattern, mark, entry.name) > last) {
+            last = number_of(pattern, mark, entry.name);
+            snprintf(name, ASSAY_BUNDLE_NAME, "%s", entry.name);
         }
-        snprintf(name, ASSAY_BUNDLE_NAME, "%s", tried);
-        any = true;
     }
-    snprintf(name, ASSAY_BUNDLE_NAME, "%s", pattern);
-    return assay_bundle_has(bundle, name);
+    if (!mark) {
+        snprintf(name, ASSAY_BUNDLE_NAME, "%s", pattern);
+    }
+    return mark ? last >= 0 : assay_bundle_has(bundle, name);
 }
 
 bool stage_can_run(const oracle_stage *stage, const assay_bundle_reader *bundle)
