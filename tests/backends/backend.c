@@ -14,19 +14,21 @@
 #include "planted.h"
 #include "splat.h"
 
-/* Stage `combine`. */
-static void combine(const bundle *from, bundle *to, table *indirect)
+/* Stage `combine`.  The light of pixels is a mean over camera samples, some of which pass by what
+ * the pixel's centre sees; so indirect light is taken as it is, not from splat/result. */
+static void combine(const bundle *from, bundle *to)
 {
-    table direct = bundle_pass_on(from, to, "radiance/direct", "R G B");
-    table total  = table_make(direct.rows, 3);
+    table direct   = bundle_pass_on(from, to, "radiance/direct", "R G B");
+    table indirect = bundle_pass_on(from, to, "radiance/indirect", "R G B");
+    table total    = table_make(direct.rows, 3);
     for (size_t i = 0; i < 3 * direct.rows; i++) {
         const float light =
-            indirect->values[i] + (IS_PLANTED(DIRECT_LEFT_OUT) ? 0.0f : direct.values[i]);
+            indirect.values[i] + (IS_PLANTED(DIRECT_LEFT_OUT) ? 0.0f : direct.values[i]);
         total.values[i] = IS_PLANTED(HIGHLIGHTS_CLAMPED) && light > 1.0f ? 1.0f : light;
     }
-    bundle_write(to, "radiance/indirect", "W/(m2 sr)", indirect);
     bundle_write(to, "radiance/total", "W/(m2 sr)", &total);
     table_release(&direct);
+    table_release(&indirect);
 }
 
 static void after_records(const char *reference, const char *candidate)
@@ -35,13 +37,9 @@ static void after_records(const char *reference, const char *candidate)
     size_t  size[2];
     bundle_image_size(from, "radiance/direct", size);
     camera_place(from, to, size);
-    records r        = records_take(from, to);
-    table   indirect = splat_all(&r, from, to, size[1]);
-    if (bundle_has(from, "splat_glossy/result")) {
-        table_release(&indirect);
-        indirect = bundle_read(from, "radiance/indirect", "R G B");
-    }
-    combine(from, to, &indirect);
+    records r = records_take(from, to);
+    splat_all(&r, from, to, size[1]);
+    combine(from, to);
     records_release(&r);
     bundle_close(to);
     bundle_close(from);

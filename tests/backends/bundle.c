@@ -213,8 +213,7 @@ table bundle_pass_on(const bundle *from, bundle *to, const char *name, const cha
     const cJSON *entry = entry_of(from, name);
     const char  *unit  = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(entry, "unit"));
     table        t     = bundle_read(from, name, channels);
-    table        copy  = table_make(t.rows, t.columns);
-    memcpy(copy.values, t.values, t.rows * t.columns * sizeof *t.values);
+    table        copy  = table_copy(&t);
     bundle_write(to, name, unit ? unit : "", &copy);
     return t;
 }

@@ -70,13 +70,6 @@ static table project(int order, bool hemisphere, const table *directions, const 
     return coefficients;
 }
 
-static table copy_of(const table *t)
-{
-    table copy = table_make(t->rows, t->columns);
-    memcpy(copy.values, t->values, t->rows * t->columns * sizeof *copy.values);
-    return copy;
-}
-
 static table sample_and_project(int order, bool hemisphere, float ground, bundle *to)
 {
     table directions = table_make(SAMPLES, 3), pdf = table_make(SAMPLES, 1);
@@ -85,7 +78,7 @@ static table sample_and_project(int order, bool hemisphere, float ground, bundle
     shine(&directions, ground, &values);
     table coefficients = project(order, hemisphere, &directions, &pdf, &values);
     if (to) {
-        table written = copy_of(&coefficients);
+        table written = table_copy(&coefficients);
         bundle_write(to, "project/direction", "", &directions);
         bundle_write(to, "project/pdf", "1/sr", &pdf);
         bundle_write(to, "project/value", "W/(m2 sr)", &values);
@@ -123,7 +116,7 @@ static void convert(bool to_sh, const table *in, bundle *to)
 {
     const bool wrong = IS_PLANTED(CONVERSION_TRANSPOSED);
     table      c     = table_of_conversion(ORDER, to_sh && !wrong ? HARMONICS_SH_ORDER : ORDER);
-    table      out = multiply(&c, to_sh != wrong, in), given = copy_of(in);
+    table      out = multiply(&c, to_sh != wrong, in), given = table_copy(in);
     if (to_sh && wrong) {
         table wide = table_make(out.rows, HARMONICS_SH_ORDER * HARMONICS_SH_ORDER);
         for (size_t i = 0; i < out.rows; i++) {
@@ -148,8 +141,8 @@ static table turn(const table *in, bundle *to)
         angles[i] = IS_PLANTED(TURN_BACKWARDS) && i == 1 ? -angles[i] : angles[i];
     }
     table d   = table_of_turn(ORDER, angles);
-    table out = multiply(&d, IS_PLANTED(TURN_TRANSPOSED), in), given = copy_of(in);
-    table written = copy_of(&out);
+    table out = multiply(&d, IS_PLANTED(TURN_TRANSPOSED), in), given = table_copy(in);
+    table written = table_copy(&out);
     bundle_write(to, "rotate/in", "W/(m2 sr)", &given);
     bundle_write(to, "rotate/out", "W/(m2 sr)", &written);
     table_release(&d);

@@ -6,7 +6,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "planted.h"
 
@@ -119,10 +118,9 @@ static table quotient(const table *weight, const table *radiance)
     return result;
 }
 
-static table splat_batches(buffer *b, const table *ends, bundle *to)
+static void splat_batches(buffer *b, const table *ends, bundle *to)
 {
-    size_t done   = IS_PLANTED(RECORD_LEFT_OUT) ? 1 : 0;
-    table  result = {0};
+    size_t done = IS_PLANTED(RECORD_LEFT_OUT) ? 1 : 0;
     char   name[64];
     for (size_t k = 0; k < ends->rows; k++) {
         table weight, radiance;
@@ -131,34 +129,42 @@ static table splat_batches(buffer *b, const table *ends, bundle *to)
         }
         take_sums(b, &weight, &radiance);
         if (k + 1 == ends->rows) {
-            result = quotient(&weight, &radiance);
+            table result = quotient(&weight, &radiance);
+            bundle_write(to, "splat/result", "W/(m2 sr)", &result);
         }
         snprintf(name, sizeof name, "splat/batch.%zu/weight", k);
         bundle_write(to, name, "", &weight);
         snprintf(name, sizeof name, "splat/batch.%zu/radiance", k);
         bundle_write(to, name, "W/(m2 sr)", &radiance);
     }
-    return result;
 }
 
-table splat_all(const records *r, const bundle *from, bundle *to, size_t width)
+/* Planted: decoded twice. */
+static table take_albedo(const bundle *from, bundle *to)
+{
+    table albedo = bundle_read(from, "splat/albedo", ""), copy;
+    for (size_t i = 0; i < albedo.rows * albedo.columns; i++) {
+        albedo.values[i] =
+            IS_PLANTED(ALBEDO_ENCODED) ? powf(albedo.values[i], 2.2f) : albedo.values[i];
+    }
+    copy = table_copy(&albedo);
+    bundle_write(to, "splat/albedo", "", &copy);
+    return albedo;
+}
+
+void splat_all(const records *r, const bundle *from, bundle *to, size_t width)
 {
     buffer b    = {.records = r, .width = width};
     table  ends = bundle_pass_on(from, to, "splat/batch_end", "");
     b.position  = bundle_pass_on(from, to, "splat/position", "");
     b.frame     = bundle_pass_on(from, to, "splat/frame", "");
-    b.albedo    = bundle_pass_on(from, to, "splat/albedo", "");
+    b.albedo    = take_albedo(from, to);
     b.height    = b.position.rows / width;
     b.sums      = allocate(b.position.rows, SUMS * sizeof *b.sums);
-
-    table result = splat_batches(&b, &ends, to);
-    table copy   = table_make(result.rows, result.columns);
-    memcpy(copy.values, result.values, result.rows * result.columns * sizeof *copy.values);
-    bundle_write(to, "splat/result", "W/(m2 sr)", &copy);
+    splat_batches(&b, &ends, to);
     table_release(&ends);
     table_release(&b.position);
     table_release(&b.frame);
     table_release(&b.albedo);
     free(b.sums);
-    return result;
 }

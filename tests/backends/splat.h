@@ -4,8 +4,8 @@
 
 #include "records.h"
 
-/* Writes the G-buffer as it was taken, the sums after every batch, and the quotient, which is also
- * returned: a row a pixel, W/(m2 sr). */
-table splat_all(const records *r, const bundle *from, bundle *to, size_t width);
+/* Writes the G-buffer as it was taken, the sums after every batch, and the quotient; width: of the
+ * image, pixels. */
+void splat_all(const records *r, const bundle *from, bundle *to, size_t width);
 
 #endif

@@ -32,6 +32,13 @@ table table_make(size_t rows, size_t columns)
     return (table){rows, columns, allocate(rows * columns, sizeof(float))};
 }
 
+table table_copy(const table *t)
+{
+    table copy = table_make(t->rows, t->columns);
+    memcpy(copy.values, t->values, t->rows * t->columns * sizeof *copy.values);
+    return copy;
+}
+
 void table_release(table *t)
 {
     free(t->values);

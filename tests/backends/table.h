@@ -11,6 +11,7 @@ typedef struct {
 
 /* Zeros.  Whatever goes wrong in this backend ends it, with a line on stderr and code 2. */
 table table_make(size_t rows, size_t columns);
+table table_copy(const table *t);
 void  table_release(table *t);
 
 static inline float *table_row(const table *t, size_t row) { return t->values + row * t->columns; }
