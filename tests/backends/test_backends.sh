@@ -91,4 +91,26 @@ while IFS='|' read -r name kind stage what; do
     [ "$code" -eq $expected ] && [ "$failing" = "$stage " ]
     result $? "$stage:$what"
 done < $sources/mutations.txt
+
+# ---- the pages do what they say ----
+root=$(pwd)
+walk() { # PAGE: runs its blocks of sh, in a folder that has scenes and tests alone
+    place=$folder/walk-$1
+    mkdir "$place" "$place/tests"
+    ln -s "$root/scenes" "$place/scenes"
+    ln -s "$root/tests/backends" "$place/tests/backends"
+    awk '/^```sh$/ { inside = 1; next } /^```/ { inside = 0 } inside' "docs/$1.md" > "$place/walk"
+    [ -s "$place/walk" ] &&
+        (cd "$place" && PATH=$folder/bin:$PATH timeout 120 sh -eu walk > "$folder/log" 2>&1)
+    code=$?
+    [ $code -eq 0 ] || sed 's/^/# /' "$folder/log"
+    result $code "docs/$1.md: its commands"
+}
+mkdir "$folder/bin"
+ln -s "$(realpath "$assay")" "$folder/bin/assay"
+ln -s "$(realpath "$BACKEND_OBJECTS/backend")" "$folder/bin/my-backend"
+walk backends
+grep -q 'normalise .*splat/result.* pass ' "$folder/log" && grep -q 'First stage that is wrong: weights' "$folder/log"
+result $? "docs/backends.md: and they print what it says"
+walk ci
 finish
