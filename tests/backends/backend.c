@@ -31,11 +31,22 @@ static void combine(const bundle *from, bundle *to)
     table_release(&indirect);
 }
 
+/* Images are written as tables, which do not say how wide they are. */
+static void describe_size(bundle *to, const size_t size[2])
+{
+    char text[32];
+    snprintf(text, sizeof text, "%zu", size[0]);
+    bundle_describe(to, "height", text);
+    snprintf(text, sizeof text, "%zu", size[1]);
+    bundle_describe(to, "width", text);
+}
+
 static void after_records(const char *reference, const char *candidate)
 {
     bundle *from = bundle_open(reference), *to = bundle_create(candidate, from);
     size_t  size[2];
     bundle_image_size(from, "radiance/direct", size);
+    describe_size(to, size);
     camera_place(from, to, size);
     records r = records_take(from, to);
     splat_all(&r, from, to, size[1]);

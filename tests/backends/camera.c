@@ -1,4 +1,5 @@
-/* camera.c - as deferred shading does it: a ray through the pixel's centre, as far as the depth. */
+/* camera.c - as deferred shading does it: a ray through the pixel's centre, as far as the depth;
+ * (0, 0, 0) where nothing is seen. */
 #include "camera.h"
 
 #include <stdio.h>
@@ -29,11 +30,16 @@ void camera_place(const bundle *from, bundle *to, const size_t size[2])
     table       depth     = bundle_pass_on(from, to, "gbuffer/depth", "Z");
     table       positions = table_make(depth.rows, 3);
     for (size_t i = 0; i < depth.rows; i++) {
-        const float x   = ((float)(i % size[1]) + centre - 0.5f * width) * 2.0f * half / height;
-        const float y   = (0.5f * height - (float)(i / size[1]) - centre) * 2.0f * half / height;
-        const vec   ray = add(forward, add(scale(right, x), scale(up, y)));
-        const vec   p   = add(eye, scale(ray, depth.values[i]));
-        memcpy(table_row(&positions, i), &p, sizeof p);
+        const float x    = ((float)(i % size[1]) + centre - 0.5f * width) * 2.0f * half / height;
+        const float y    = (0.5f * height - (float)(i / size[1]) - centre) * 2.0f * half / height;
+        const float rise = IS_PLANTED(ROWS_FROM_BELOW) ? -y : y;
+        const vec   ray  = add(forward, add(scale(right, x), scale(up, rise)));
+        const float far =
+            IS_PLANTED(DEPTH_ALONG_RAY) ? depth.values[i] / length(ray) : depth.values[i];
+        const vec p = add(eye, scale(ray, far));
+        if (depth.values[i] > 0.0f) {
+            memcpy(table_row(&positions, i), &p, sizeof p);
+        }
     }
     bundle_write(to, "gbuffer/position", "m", &positions);
     table_release(&depth);

@@ -18,17 +18,19 @@ few="--size 32x32 --spp 1 --a 0.4 --in-front on --theta-strata 4 --phi-strata 12
 run render $box -q -m splat $few -o "$folder/box.exr" --dump "$folder/box"
 went_well
 result $? "a reference is rendered"
+scene=$box
+glossy_box=scenes/cornell-box-glossy/cornell-box-glossy.gltf
 shiny="--size 16x16 --spp 1 --a 0.5 --theta-strata 3 --phi-strata 9 --bounces 2 --secondary direct
     --gbuffer centres --order 4 --glossy-accuracy 0 --grid 6 --nodes 12"
-run render scenes/cornell-box-glossy/cornell-box-glossy.gltf -q -m splat $shiny \
+run render $glossy_box -q -m splat $shiny \
     -o "$folder/shiny.exr" --dump "$folder/shiny"
 went_well
 result $? "a glossy one, too"
 
-# Runs backend PROGRAM for KIND and verifies what it made; leaves $code, $failing (stages that do not pass).
+# Runs backend PROGRAM for KIND and verifies what it made, an image also against $scene; leaves $code, $failing (stages that do not pass).
 verify() { # PROGRAM KIND REFERENCE
     case $2 in
-    image) given=$3 against="--reference $3" ;;
+    image) given=$3 against="--reference $3 --scene $scene" ;;
     questions) given=$3 against= ;;
     *) given='' against= ;;
     esac
@@ -54,7 +56,9 @@ passes_at() { # NAME PROGRAM KIND REFERENCE
     result $? "$1: $3 passes"
 }
 passes "as it is" "$BACKEND_OBJECTS/backend"
+scene=$glossy_box
 passes_at "glossy walls" "$BACKEND_OBJECTS/backend" image "$folder/shiny"
+scene=$box
 passes_at "glossy walls" "$BACKEND_OBJECTS/backend" questions "$folder/shiny"
 
 # Other roundings than ours: products and sums in one, and none kept in registers.
