@@ -80,7 +80,7 @@ plant() { # NAME: builds $folder/mutant
     unit=$file
     [ "$file" != harmonics_body.h ] || unit=harmonics.c
     others=$(find "$BACKEND_OBJECTS" -name '*.o' ! -name "${unit%.c}.o")
-    $BACKEND_COMPILE -O1 -DPLANTED="$1" -c "$sources/$unit" -o "$folder/mutant.o" &&
+    $BACKEND_COMPILE -O0 -DPLANTED="$1" -c "$sources/$unit" -o "$folder/mutant.o" &&
         $BACKEND_COMPILE "$folder/mutant.o" $others -o "$folder/mutant" $BACKEND_LIBS
 }
 printf '#| %-25s %-20s %s\n' mistake 'planted in' 'stages that fail'
