@@ -43,6 +43,7 @@ typedef struct {
     const char            *in, *out; /* bundles; out is made                                 */
     const assay_scene     *scene;    /* NULL without                                         */
     const assay_precision *bounds;   /* adds NAME_bound for each array NAME; NULL: none      */
+    bool                   inputs;   /* the inputs are written, too: a reference for candidates  */
     int                    param_count;
     const char *const     *params; /* "key=value", before what the manifest says           */
 } assay_replay_options;
