@@ -209,6 +209,12 @@ static void test_inputs(void **state)
     assert_non_null(strstr(assay_verdict_get(verdict, "not judged"), "splat/albedo"));
     assert_null(strstr(assay_verdict_get(verdict, "not judged"), "splat/result"));
     assay_verdict_destroy(verdict);
+    /* What is rounded once is the reference's. */
+    memcpy(other, d, sizeof *other);
+    other->values[DIRECT][3] *= 1.0 + 0.9 * 0x1p-24;
+    verdict = verify(*state, d, other, ASSAY_PRECISION_FLOAT);
+    assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_PASS);
+    assay_verdict_destroy(verdict);
     free(other);
     free(d);
 }
