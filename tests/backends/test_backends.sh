@@ -98,23 +98,43 @@ done < $sources/mutations.txt
 
 # ---- the pages do what they say ----
 root=$(pwd)
-walk() { # PAGE: runs its blocks of sh, in a folder that has scenes and tests alone
-    place=$folder/walk-$1
-    mkdir "$place" "$place/tests"
-    ln -s "$root/scenes" "$place/scenes"
-    ln -s "$root/tests/backends" "$place/tests/backends"
-    awk '/^```sh$/ { inside = 1; next } /^```/ { inside = 0 } inside' "docs/$1.md" > "$place/walk"
-    [ -s "$place/walk" ] &&
-        (cd "$place" && PATH=$folder/bin:$PATH timeout 120 sh -eu walk > "$folder/log" 2>&1)
-    code=$?
-    [ $code -eq 0 ] || sed 's/^/# /' "$folder/log"
-    result $code "docs/$1.md: its commands"
-}
 mkdir "$folder/bin"
 ln -s "$(realpath "$assay")" "$folder/bin/assay"
 ln -s "$(realpath "$BACKEND_OBJECTS/backend")" "$folder/bin/my-backend"
-walk backends
-grep -q 'normalise .*splat/result.* pass ' "$folder/log" && grep -q 'First stage that is wrong: weights' "$folder/log"
+
+walk() { # NAME: runs $folder/commands, in a folder that has scenes and tests alone
+    place=$folder/walk-$number
+    mkdir "$place" "$place/tests"
+    ln -s "$root/scenes" "$place/scenes"
+    ln -s "$root/tests/backends" "$place/tests/backends"
+    ln -s "$folder/bin/my-backend" "$place/my-backend"
+    [ -s "$folder/commands" ] &&
+        (cd "$place" && PATH=$folder/bin:$PATH timeout 120 sh -eu "$folder/commands") \
+            > "$folder/log" 2>&1
+    code=$?
+    [ $code -eq 0 ] || sed 's/^/# /' "$folder/log"
+    result $code "$1"
+}
+shell_of() { # PAGE
+    awk '/^```sh$/ { inside = 1; next } /^```/ { inside = 0 } inside' "docs/$1.md"
+}
+# What a workflow runs, but for what installs and builds.
+workflow_of() { # PAGE
+    awk '/^```yaml$/ { yaml = 1 } /^```$/ { yaml = 0 }
+        yaml && /run: \|$/ { run = 1; next }
+        run && /^          / { print substr($0, 11); next }
+        { run = 0 }' "docs/$1.md" |
+        sed -e '/^apt-get/d' -e '/^git/d' -e '/^make/d' -e "s|/opt/assay|$root|"
+}
+shell_of backends > "$folder/commands"
+walk "docs/backends.md: its commands"
+grep -q 'normalise .*splat/result.* pass ' "$folder/log" &&
+    grep -q 'First stage that is wrong: weights' "$folder/log"
 result $? "docs/backends.md: and they print what it says"
-walk ci
+shell_of ci > "$folder/commands"
+walk "docs/ci.md: its commands"
+workflow_of ci > "$folder/commands"
+[ "$(grep -c '^assay \|^./my-backend' "$folder/commands")" -eq 3 ]
+result $? "docs/ci.md: a workflow of three steps"
+walk "docs/ci.md: its workflow"
 finish
