@@ -206,6 +206,11 @@ static void test_visible(void **state)
     assert_int_equal(exact.position.beyond + exact.normal.beyond, 0);
     assert_true(right.unknown < PIXELS / 50 && exact.unknown <= right.unknown);
     assert_true(right.position.most > 0.002);
+    /* A half sees edges two pixels off: there nothing is known, and elsewhere bounds hold. */
+    const visible_use half = use_visible(*state, scene, ASSAY_PRECISION_HALF, 11, 0.0, false);
+    print_message("visible, 11 digits: %zu pixels unknown\n", half.unknown);
+    assert_int_equal(half.position.beyond + half.normal.beyond, 0);
+    assert_true(half.unknown > PIXELS / 20 && half.unknown < PIXELS);
     const visible_use shifted = use_visible(*state, scene, ASSAY_PRECISION_FLOAT, 24, 0.5, false);
     const visible_use turned  = use_visible(*state, scene, ASSAY_PRECISION_FLOAT, 24, 0.0, true);
     assert_true(shifted.position.most > 1000.0);

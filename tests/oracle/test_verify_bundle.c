@@ -411,6 +411,58 @@ static void test_broken_files(void **state)
     free(d);
 }
 
+/* Text of the manifest that is replaced, of an entry that begins with `after`. */
+static void replace(const stage_case *c, const char *after, const char *from, const char *to)
+{
+    static char text[1 << 16];
+    char        path[400];
+    snprintf(path, sizeof path, "%s/manifest.json", c->path);
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    char *entry = strstr(text, after);
+    char *at    = entry ? strstr(entry, from) : NULL;
+    assert_non_null(at);
+    assert_int_equal(strlen(from), strlen(to));
+    memcpy(at, to, strlen(to));
+    file = fopen(path, "wb");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static void test_lying_manifest(void **state)
+{
+    static const struct {
+        const char *after, *from, *to, *word;
+    } cases[] = {
+        {"\"records/radius\"", "200", "199", "shape"},
+        {"\"records/radius\"", "float64", "float32", "dtype"},
+        {"\"records/radius\"", "float64", "floaty8", "dtype"},
+        {"\"records/radius\"", "records/radius.npy", "records/normal.npy", "'file'"},
+        {"\"records/radius\"", "\"unit\"", "\"tinu\"", "unit"},
+        {"\"assay-bundle\"", "assay-bundle", "essay-bundle", "not of a bundle"},
+    };
+    data *d = make_data(*state);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        stage_case c = stage_case_begin(*state);
+        add_arrays(&c, d, -1);
+        stage_case_finish(&c);
+        replace(&c, cases[i].after, cases[i].from, cases[i].to);
+        refuse(*state, &c, d, ASSAY_ERR_FORMAT, cases[i].word);
+        stage_case_end(&c);
+    }
+    /* A NaN that the reference has, too, is a NaN still. */
+    stage_case c           = stage_case_begin(*state);
+    d->values[RESULT][100] = NAN;
+    add_arrays(&c, d, -1);
+    stage_case_finish(&c);
+    refuse(*state, &c, d, ASSAY_ERR_DOMAIN, "splat/result");
+    stage_case_end(&c);
+    free(d);
+}
+
 /* Nothing that a stage could judge is no pass. */
 static void test_nothing(void **state)
 {
@@ -442,6 +494,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_other_making, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_other_arrays, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_broken_files, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_lying_manifest, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_nothing, context_set_up, context_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
