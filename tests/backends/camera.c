@@ -25,7 +25,7 @@ void camera_place(const bundle *from, bundle *to, const size_t size[2])
     const vec   right   = take_vector(from, "assay:camera.right");
     const vec   up      = take_vector(from, "assay:camera.up");
     const float half    = tanf(0.5f * bundle_number(from, "assay:camera.yfov"));
-    const float centre  = IS_PLANTED(HALF_PIXEL) ? 0.0f : 0.5f;
+    const float centre  = IS_PLANTED(HALF_PIXEL) ? 0.0f : IS_PLANTED(PIXEL_SHIFTED) ? 0.501f : 0.5f;
     const float height = (float)size[0], width = (float)size[1];
     table       depth     = bundle_pass_on(from, to, "gbuffer/depth", "Z");
     table       positions = table_make(depth.rows, 3);

@@ -63,7 +63,10 @@ void records_release(records *r) { free(r->list); }
 float record_weight(const records *rules, const record *k, vec position, vec normal)
 {
     const vec   offset = sub(position, k->position);
-    const float radius = IS_PLANTED(RADIUS_DOUBLED) ? 2.0f * k->radius : k->radius;
+    const float wider  = IS_PLANTED(RADIUS_DOUBLED) ? 2.0f
+                         : IS_PLANTED(RADIUS_ROUGH) ? 1.001f
+                                                    : 1.0f;
+    const float radius = wider * k->radius;
     const float height = 0.5f * dot(offset, add(normal, k->normal));
     const float cosine = 1.0f - dot(normal, k->normal);
     const float tilt   = cosine > 0.0f ? cosine : 0.0f;
