@@ -21,8 +21,8 @@ static const float TWO_PI = 6.28318531f;
 
 /* ---- samples ---- */
 
-/* Multiples of 1 / p and 1 / p^2, p^3 = p + 1, modulo 1 fill a square evenly; the square is drawn to a
- * hemisphere or a sphere, area by area. */
+/* Multiples of 1 / p and 1 / p^2, p^3 = p + 1, modulo 1 fill a square evenly; the square is drawn
+ * to a hemisphere or a sphere, area by area. */
 static void spread(bool hemisphere, table *directions, table *pdf)
 {
     for (size_t i = 0; i < directions->rows; i++) {
