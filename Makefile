@@ -133,9 +133,26 @@ demo: deps ## render our Cornell box two ways, verify one against the other, wri
 	@echo "  $(DEMO)/report.html       both side by side, where they differ, and why: open it in a browser"
 	@echo "Next: $(BUILD)/assay render --help"
 
+# A backend that shares nothing with assay but a format: without its headers and its library.
+BACKEND_C       := $(wildcard tests/backends/*.c)
+BACKEND_O       := $(BACKEND_C:tests/backends/%.c=$(BUILD)/backend/%.o)
+BACKEND_COMPILE := $(CC) -D_GNU_SOURCE -std=c11 $(OPT) $(WARN) -Wstrict-prototypes \
+                   -Wmissing-prototypes -ffp-contract=off $(SAN)
+BACKEND_LIBS    := -lcjson -lmd -lOpenEXRCore -lm
+BACKEND_ENV     = BACKEND_COMPILE="$(BACKEND_COMPILE)" BACKEND_LIBS="$(BACKEND_LIBS)" \
+                  BACKEND_OBJECTS=$(BUILD)/backend
+
+$(BUILD)/backend/%.o: tests/backends/%.c
+	@mkdir -p $(@D)
+	$(BACKEND_COMPILE) -MMD -MP -c $< -o $@
+
+$(BUILD)/backend/backend: $(BACKEND_O)
+	$(BACKEND_COMPILE) $^ $(BACKEND_LIBS) -o $@
+
 test: deps-test ## build and run all tests
-	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(TESTS) $(BUILD)/make_scenes $(GOLDEN_TOOL)
-	@$(MUTANT_ENV) ASSAY_BIN=$(BUILD)/assay tests/tools/run.sh $(TEST_SCRIPTS) $(TESTS)
+	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(TESTS) $(BUILD)/make_scenes \
+	   $(BUILD)/backend/backend $(GOLDEN_TOOL)
+	@$(MUTANT_ENV) $(BACKEND_ENV) ASSAY_BIN=$(BUILD)/assay tests/tools/run.sh $(TEST_SCRIPTS) $(TESTS)
 
 MUTANT_LISTS = tests/mutants/*.txt
 mutants: deps-test ## break the source on purpose, also where `make test` does not
@@ -299,5 +316,5 @@ clean: ## remove everything that was built
 
 -include $(wildcard $(REF_BUILD)/*.d)
 -include $(LIB_O:.o=.d) $(CLI_O:.o=.d) $(GEN_O:.o=.d) $(HELP_O:.o=.d) $(TESTS:=.d) $(BENCHES:=.d) $(TABLES:=.d) \
-         $(GOLDEN_TOOL).d
+         $(BACKEND_O:.o=.d) $(GOLDEN_TOOL).d
 .SECONDARY:

@@ -30,6 +30,7 @@ enum {
     OPT_TIME,
     OPT_PARAM,
     OPT_BOUNDS,
+    OPT_INPUTS,
     OPT_THREADS,
     OPT_MEMORY,
     OPT_HELP,
@@ -42,6 +43,7 @@ static const cli_option OPTIONS[] = {
     {"time", 0, "T", "seconds into the scene's animations (default 0)"},
     {"param", 'p', "K=V", "a parameter of the stage, instead of what the manifest says"},
     {"bounds", 0, "PRECISION", "half, float or double: adds NAME_bound for each output NAME"},
+    {"with-inputs", 0, NULL, "writes the inputs, too: a reference for assay verify"},
     {"threads", 0, "N", "worker threads (default: all processors)"},
     CLI_MEMORY_OPTION,
     {"help", 'h', NULL, "this text"},
@@ -74,6 +76,7 @@ static const char *take(void *user, int index, const char *value)
     case OPT_TIME: return cli_read_real(value, &r->time);
     case OPT_PARAM: return take_param(r, value);
     case OPT_BOUNDS: return take_bounds(r, value);
+    case OPT_INPUTS: r->options.inputs = true; return NULL;
     case OPT_THREADS:
         return cli_read_count(value, 1, 1024, &r->threads) ? "takes a number from 1 to 1024" : NULL;
     case OPT_MEMORY: return cli_read_bytes(value, &r->memory_limit);

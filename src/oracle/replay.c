@@ -68,6 +68,18 @@ static assay_status add_table(assay_context *context, assay_bundle *bundle, cons
     return status;
 }
 
+static assay_status write_inputs(const stage_run *run, assay_bundle *bundle)
+{
+    assay_status status = ASSAY_OK;
+    for (int i = 0; run->stage->info.inputs[i].name && status == ASSAY_OK; i++) {
+        if (run->tables[i]) {
+            status =
+                assay_bundle_add_table(bundle, run->in[i].name, run->in[i].unit, run->tables[i]);
+        }
+    }
+    return status;
+}
+
 static assay_status write_outputs(const stage_run *run, assay_bundle *bundle)
 {
     assay_status status = ASSAY_OK;
@@ -98,6 +110,7 @@ assay_status assay_replay(assay_context *context, const assay_replay_options *op
                     : stage_run_start(&run, context, stage, in, options->scene, options->bounds,
                                       options->param_count, options->params);
     status = status ? status : describe(&run, options->bounds, out);
+    status = status || !options->inputs ? status : write_inputs(&run, out);
     status = status ? status : write_outputs(&run, out);
     status = status ? status : assay_bundle_finish(out);
     stage_run_release(&run);

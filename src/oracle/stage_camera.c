@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/context.h"
+
 static bool read_numbers(const char *text, int count, double *out)
 {
     for (int i = 0; text && i < count; i++) {
@@ -48,7 +50,7 @@ static bool find_sides(const stage_run *run, size_t pixels, int *width, int *hei
     for (int i = 0; i < assay_bundle_count(run->bundle); i++) {
         assay_bundle_entry entry;
         if (assay_bundle_entry_at(run->bundle, i, &entry) == ASSAY_OK && entry.image &&
-            entry.dimensions == 3 && entry.shape[0] * entry.shape[1] == pixels &&
+            entry.dimensions == 3 && (pixels == 0 || entry.shape[0] * entry.shape[1] == pixels) &&
             entry.shape[0] <= ASSAY_IMAGE_MAX_SIDE && entry.shape[1] <= ASSAY_IMAGE_MAX_SIDE) {
             *height = (int)entry.shape[0];
             *width  = (int)entry.shape[1];
@@ -73,4 +75,24 @@ stage_camera stage_camera_read(const stage_run *run, size_t pixels)
                                      .yfov          = 0.5 * ASSAY_PI};
     }
     return view;
+}
+
+assay_status stage_camera_of_image(const stage_run *run, int width, int height,
+                                   stage_camera *view_out)
+{
+    stage_camera view = {.width = width, .height = height};
+    if ((width == 0 || height == 0) && !find_sides(run, 0, &view.width, &view.height)) {
+        return assay_fail(run->context, ASSAY_ERR_FORMAT,
+                          "%s: bundle: it lists no image, and width and height are not given",
+                          assay_bundle_path(run->bundle));
+    }
+    view.known = read_camera(run, &view.camera);
+    if (!view.known) {
+        return assay_fail(run->context, ASSAY_ERR_FORMAT,
+                          "%s: bundle: manifest.json describes no camera (assay:camera.position, "
+                          ".forward, .up, .right, .yfov or .xmag and .ymag)",
+                          assay_bundle_path(run->bundle));
+    }
+    *view_out = view;
+    return ASSAY_OK;
 }

@@ -15,4 +15,9 @@ typedef struct {
 /* For `pixels` pixels; the image's sides are those of a listed image of so many. */
 stage_camera stage_camera_read(const stage_run *run, size_t pixels);
 
+/* For an image of these sides; 0: those of the first image that the bundle lists.  Errors: FORMAT
+ * (no camera, no image). */
+assay_status stage_camera_of_image(const stage_run *run, int width, int height,
+                                   stage_camera *view_out);
+
 #endif

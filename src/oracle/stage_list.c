@@ -7,6 +7,8 @@
 
 /* clang-format off */
 const oracle_stage *const assay_stages[] = {
+    &stage_visible,
+    &stage_gather,
     &stage_irradiance,
     &stage_weights,
     &stage_interpolate,

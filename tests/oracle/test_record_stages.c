@@ -62,6 +62,17 @@ static data *make_data(void)
     return d;
 }
 
+/* Far from the origin, where positions are known less well than distances. */
+static void move(data *d, double far)
+{
+    for (size_t i = 0; i < 3 * RECORDS; i++) {
+        d->position[i] += far;
+    }
+    for (size_t i = 0; i < 3 * POINTS; i++) {
+        d->at[i] += far;
+    }
+}
+
 static void add_records(const stage_case *c, const data *d)
 {
     stage_case_table(c, "records/position", "m", RECORDS, 3, d->position);
@@ -276,6 +287,22 @@ static void test_interpolate(void **state)
     free(d);
 }
 
+static void test_far_away(void **state)
+{
+    for (int p = ASSAY_PRECISION_HALF; p <= ASSAY_PRECISION_FLOAT; p++) {
+        data     *d      = make_data();
+        bound_use sums   = {0};
+        const int digits = p == ASSAY_PRECISION_HALF ? 11 : 24;
+        move(d, p == ASSAY_PRECISION_HALF ? 7.0 : 3000.0);
+        const bound_use weights = use_weights(d, *state, (assay_precision)p, digits, false, RIGHT);
+        const bound_use means   = use_means(d, *state, (assay_precision)p, digits, RIGHT, &sums);
+        print_message("far away, %d digits: %.3f, %.3f, %.3f of the bound\n", digits, weights.most,
+                      means.most, sums.most);
+        assert_int_equal(weights.beyond + means.beyond + sums.beyond, 0);
+        free(d);
+    }
+}
+
 /* ---- splatting ---- */
 
 static bound_use use_splat(const data *d, assay_context *context, assay_precision precision,
@@ -381,6 +408,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_weights, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_interpolate, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_far_away, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_splat, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_normalise_and_combine, context_set_up,
                                         context_tear_down),

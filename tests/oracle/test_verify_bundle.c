@@ -37,6 +37,7 @@ static const char *const UNITS[]  = {
      "",  "", "W/(m2 sr)", "W/(m2 sr)", "W/(m2 sr)",  "W/(m2 sr)", "W/(m2 sr)"};
 enum { ARRAY_COUNT = sizeof ARRAYS / sizeof ARRAYS[0], MOST = 9 * PIXELS };
 static const size_t COLUMNS[ARRAY_COUNT] = {3, 3, 1, 3, 9, 9, 3, 9, 3, 1, 3, 3, 3, 3, 3};
+enum { ALBEDO = 8, INPUTS = 11 };
 enum { WEIGHT = 9, SUM, RESULT, DIRECT, INDIRECT, TOTAL };
 
 typedef struct {
@@ -110,14 +111,20 @@ static void run_stage(assay_context *context, data *d, const char *stage)
     round_all(d);
 }
 
+static void make_stages(assay_context *context, data *d)
+{
+    run_stage(context, d, "splat");
+    run_stage(context, d, "normalise");
+    run_stage(context, d, "combine");
+}
+
 static data *make_data(assay_context *context)
 {
     data *d = calloc(1, sizeof *d);
     assert_non_null(d);
     make_inputs(d);
     round_all(d);
-    run_stage(context, d, "splat");
-    run_stage(context, d, "normalise");
+    make_stages(context, d);
     memcpy(d->values[INDIRECT], d->values[RESULT], sizeof d->values[RESULT]);
     run_stage(context, d, "combine");
     return d;
@@ -129,11 +136,12 @@ static assay_verdict *verify(assay_context *context, const data *candidate, cons
     stage_case     c = stage_case_begin(context), r = stage_case_begin(context);
     assay_verdict *verdict = NULL;
     add_arrays(&c, candidate, -1);
-    add_arrays(&r, reference, -1);
+    add_arrays(&r, reference ? reference : candidate, -1);
     stage_case_finish(&c);
     stage_case_finish(&r);
     assert_int_equal(assay_verdict_create(context, "candidate", "reference", &verdict), ASSAY_OK);
-    if (assay_verify_bundle(context, c.path, r.path, NULL, precision, verdict) != ASSAY_OK) {
+    if (assay_verify_bundle(context, c.path, reference ? r.path : NULL, NULL, precision, verdict) !=
+        ASSAY_OK) {
         fail_msg("%s", assay_context_error(context));
     }
     stage_case_end(&c);
@@ -141,18 +149,27 @@ static assay_verdict *verify(assay_context *context, const data *candidate, cons
     return verdict;
 }
 
+static int count_of(const assay_verdict *verdict, const char *stage)
+{
+    int count = 0;
+    for (int i = 0; i < assay_verdict_count(verdict); i++) {
+        count += strcmp(assay_verdict_at(verdict, i).stage, stage) == 0;
+    }
+    return count;
+}
+
 static void test_right(void **state)
 {
     data          *d       = make_data(*state);
     assay_verdict *verdict = verify(*state, d, d, ASSAY_PRECISION_FLOAT);
     assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_PASS);
-    assert_int_equal(assay_verdict_count(verdict), 4);
+    assert_int_equal(assay_verdict_count(verdict), 4 + INPUTS);
     assert_string_equal(assay_verdict_at(verdict, 0).stage, "splat");
     assert_string_equal(assay_verdict_at(verdict, 2).stage, "normalise");
     assert_string_equal(assay_verdict_at(verdict, 3).stage, "combine");
     assert_string_equal(assay_verdict_get(verdict, "precision"), "float");
-    assert_non_null(strstr(assay_verdict_get(verdict, "not judged"), "records/position"));
-    assert_null(strstr(assay_verdict_get(verdict, "not judged"), "splat/result"));
+    assert_int_equal(count_of(verdict, "inputs"), INPUTS);
+    assert_null(assay_verdict_get(verdict, "not judged"));
     for (int i = 0; i < 4; i++) {
         const assay_finding f = assay_verdict_at(verdict, i);
         assert_true(f.in_bounds >= 0.0 && f.in_bounds <= 1.0 && f.bound > 0.0);
@@ -163,6 +180,42 @@ static void test_right(void **state)
     verdict = verify(*state, d, d, ASSAY_PRECISION_DOUBLE);
     assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_FAIL);
     assay_verdict_destroy(verdict);
+    free(d);
+}
+
+/* Another albedo, and all that follows from it: every stage is right, on inputs that are not. */
+static void test_inputs(void **state)
+{
+    data *d = make_data(*state), *other = malloc(sizeof *other);
+    assert_non_null(other);
+    memcpy(other, d, sizeof *other);
+    other->values[ALBEDO][31] *= 1.0 + 0x1p-22;
+    round_all(other);
+    make_stages(*state, other);
+    assay_verdict      *verdict = verify(*state, other, d, ASSAY_PRECISION_FLOAT);
+    const assay_finding f       = assay_verdict_at(verdict, assay_verdict_first(verdict));
+    assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_CANNOT_TELL);
+    assert_string_equal(f.stage, "inputs");
+    assert_string_equal(f.array, "splat/albedo");
+    assert_true(f.place.row == 10 && f.place.column == 1 && f.in_bounds > 1.0);
+    assay_verdict_destroy(verdict);
+    /* Rounded to halves it is what a half has of it. */
+    verdict = verify(*state, other, d, ASSAY_PRECISION_HALF);
+    assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_PASS);
+    assay_verdict_destroy(verdict);
+    verdict = verify(*state, other, NULL, ASSAY_PRECISION_FLOAT);
+    assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_PASS);
+    assert_int_equal(count_of(verdict, "inputs"), 0);
+    assert_non_null(strstr(assay_verdict_get(verdict, "not judged"), "splat/albedo"));
+    assert_null(strstr(assay_verdict_get(verdict, "not judged"), "splat/result"));
+    assay_verdict_destroy(verdict);
+    /* What is rounded once is the reference's. */
+    memcpy(other, d, sizeof *other);
+    other->values[DIRECT][3] *= 1.0 + 0.9 * 0x1p-24;
+    verdict = verify(*state, d, other, ASSAY_PRECISION_FLOAT);
+    assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_PASS);
+    assay_verdict_destroy(verdict);
+    free(other);
     free(d);
 }
 
@@ -358,6 +411,58 @@ static void test_broken_files(void **state)
     free(d);
 }
 
+/* Text of the manifest that is replaced, of an entry that begins with `after`. */
+static void replace(const stage_case *c, const char *after, const char *from, const char *to)
+{
+    static char text[1 << 16];
+    char        path[400];
+    snprintf(path, sizeof path, "%s/manifest.json", c->path);
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    char *entry = strstr(text, after);
+    char *at    = entry ? strstr(entry, from) : NULL;
+    assert_non_null(at);
+    assert_int_equal(strlen(from), strlen(to));
+    memcpy(at, to, strlen(to));
+    file = fopen(path, "wb");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static void test_lying_manifest(void **state)
+{
+    static const struct {
+        const char *after, *from, *to, *word;
+    } cases[] = {
+        {"\"records/radius\"", "200", "199", "shape"},
+        {"\"records/radius\"", "float64", "float32", "dtype"},
+        {"\"records/radius\"", "float64", "floaty8", "dtype"},
+        {"\"records/radius\"", "records/radius.npy", "records/normal.npy", "'file'"},
+        {"\"records/radius\"", "\"unit\"", "\"tinu\"", "unit"},
+        {"\"assay-bundle\"", "assay-bundle", "essay-bundle", "not of a bundle"},
+    };
+    data *d = make_data(*state);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        stage_case c = stage_case_begin(*state);
+        add_arrays(&c, d, -1);
+        stage_case_finish(&c);
+        replace(&c, cases[i].after, cases[i].from, cases[i].to);
+        refuse(*state, &c, d, ASSAY_ERR_FORMAT, cases[i].word);
+        stage_case_end(&c);
+    }
+    /* A NaN that the reference has, too, is a NaN still. */
+    stage_case c           = stage_case_begin(*state);
+    d->values[RESULT][100] = NAN;
+    add_arrays(&c, d, -1);
+    stage_case_finish(&c);
+    refuse(*state, &c, d, ASSAY_ERR_DOMAIN, "splat/result");
+    stage_case_end(&c);
+    free(d);
+}
+
 /* Nothing that a stage could judge is no pass. */
 static void test_nothing(void **state)
 {
@@ -383,11 +488,13 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_right, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_inputs, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_planted, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_channels, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_other_making, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_other_arrays, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_broken_files, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_lying_manifest, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_nothing, context_set_up, context_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -56,7 +56,7 @@ void stage_case_run(stage_case *c, const char *stage, assay_precision precision)
     assert_int_equal(assay_bundle_open(c->context, c->path, &c->reader), ASSAY_OK);
     const oracle_stage *found = assay_stage_find(stage);
     assert_non_null(found);
-    if (stage_run_start(&c->run, c->context, found, c->reader, NULL, &precision, 0, NULL) !=
+    if (stage_run_start(&c->run, c->context, found, c->reader, c->scene, &precision, 0, NULL) !=
         ASSAY_OK) {
         fail_msg("%s", assay_context_error(c->context));
     }

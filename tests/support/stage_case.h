@@ -14,6 +14,7 @@ typedef struct {
     char                 root[256], path[300];
     assay_bundle        *bundle;
     assay_bundle_reader *reader;
+    const assay_scene   *scene; /* of stages that look at one; NULL */
     stage_run            run;
 } stage_case;
 
