@@ -33,7 +33,7 @@ for words in --help -h help --version "render --help" "render -h" "scene --help"
     went_well && [ -s "$folder/stdout" ]
     result $? "$words: stdout, exit code 0"
 done
-for command in render scene methods diff verify report; do
+for command in render scene methods diff verify replay report; do
     run $command --help
     missing=$(sed -n 's/^.*{"\([a-z-]*\)", \(0\|.[a-z].\), .*/\1/p' src/cli/cmd_$command.c |
         while read -r name; do grep -q -- "--$name" "$folder/stdout" || echo "$name"; done)
@@ -58,7 +58,7 @@ same_options() { # COMMAND
     [ -s "$folder/help" ] && diff "$folder/man" "$folder/help" > "$folder/difference"
 }
 man=docs/assay.1
-for command in render scene methods diff verify report; do
+for command in render scene methods diff verify replay report; do
     same_options $command || sed 's/^/# /' "$folder/difference"
     same_options $command
     result $? "the man page has the options of $command"
