@@ -20,8 +20,8 @@ ASSAY_API size_t        assay_array_columns(const assay_array *array);
 ASSAY_API double       *assay_array_data(assay_array *array);
 ASSAY_API const double *assay_array_values(const assay_array *array);
 
-/* Reads a .npy file of versions 1 to 3, C order, '<f8' or '<f4', one or two dimensions (one
- * dimension is one row a value).  Errors: NOT_FOUND, FORMAT, UNSUPPORTED (other types, Fortran
+/* Reads a .npy file of versions 1 to 3, C order, '<f8', '<f4' or '<f2', one or two dimensions
+ * (one dimension is one row a value).  Errors: NOT_FOUND, FORMAT, UNSUPPORTED (other types, Fortran
  * order, other byte order, more dimensions), LIMIT, MEMORY. */
 ASSAY_API assay_status assay_array_read_npy(assay_context *context, const char *path,
                                             assay_array **array_out);

@@ -7,11 +7,17 @@
 #include "assay/compare.h"
 #include "assay/context.h"
 #include "assay/image.h"
+#include "assay/metrics.h"
 #include "assay/params.h"
 #include "assay/plot.h"
+#include "assay/precision.h"
 #include "assay/render.h"
+#include "assay/replay.h"
+#include "assay/report.h"
 #include "assay/scene.h"
 #include "assay/status.h"
 #include "assay/types.h"
+#include "assay/verdict.h"
+#include "assay/verify.h"
 
 #endif

@@ -43,7 +43,7 @@ typedef struct {
     uint64_t    seed;   /* of the random numbers                                         */
     const char *layers; /* comma-separated groups "color,gbuffer,split,irradiance" or
                            "all"; NULL: "all".  See docs/methods/path.md                 */
-    const char *dump;   /* folder to make for the stages, a bundle (docs/bundles.md), or
+    const char *dump;   /* folder to make for the stages, a bundle (docs/bundle.md), or
                            NULL; must not be there yet                                   */
 } assay_render_options;
 

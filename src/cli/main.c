@@ -16,6 +16,9 @@ static const struct {
     {"scene", cli_scene, "tell what a glTF scene holds, and what of it is not supported"},
     {"methods", cli_methods, "list the methods, their parameters, ranges and sources"},
     {"diff", cli_diff, "compare two OpenEXR images"},
+    {"replay", cli_replay, "run one stage on given arrays: what should have come out of yours?"},
+    {"verify", cli_verify, "say whether images are the same light as a reference, and how sure"},
+    {"report", cli_report, "one HTML page: pictures, differences, stages, records, parameters"},
     {"basis", cli_basis, "SH, HSH and other bases: values, projections, rotations, pictures"},
 };
 
@@ -30,8 +33,10 @@ static void print_usage(FILE *out)
     for (int i = 0; i < COMMAND_COUNT; i++) {
         fprintf(out, "  %-10s %s\n", COMMANDS[i].name, COMMANDS[i].summary);
     }
-    fprintf(out, "\nexit codes: 0 success; 1 the images differ; 2 bad input or option; 3 out of\n"
-                 "memory or cannot write; 4 internal error; 130 interrupted\n");
+    fprintf(out,
+            "\nexit codes: 0 success; 1 the images differ, or the candidate fails; 2 bad input\n"
+            "or option, or cannot tell; 3 out of memory or cannot write; 4 internal error; 130 "
+            "interrupted\n");
 }
 
 static int run_command(int argc, char **argv)
@@ -54,8 +59,8 @@ static int run_command(int argc, char **argv)
             return COMMANDS[i].run(argc - 2, argv + 2);
         }
     }
-    cli_complain(name,
-                 "unknown command or option; the commands are render, scene, methods, diff, basis");
+    cli_complain(name, "unknown command or option; the commands are render, scene, methods, diff, "
+                       "verify, replay, report, basis");
     return CLI_EXIT_USAGE;
 }
 

@@ -9,8 +9,9 @@
 struct assay_array {
     assay_context *context;
     size_t         rows, columns;
-    double        *values; /* rows * columns, row by row                      */
-    char          *name;   /* the file it was read from, or NULL: for messages */
+    double        *values;     /* rows * columns, row by row                      */
+    char          *name;       /* the file it was read from, or NULL: for messages */
+    size_t         file_bytes; /* of a value in that file: 8, 4, 2; 0 where it was made    */
 };
 
 /* What to call a table in a message: its file, or what it is. */

@@ -2,6 +2,8 @@
 #ifndef ASSAY_IO_BUNDLE_READ_H
 #define ASSAY_IO_BUNDLE_READ_H
 
+#include <stdbool.h>
+
 #include "assay/array.h"
 
 typedef struct assay_bundle_reader assay_bundle_reader;
@@ -25,5 +27,41 @@ bool assay_bundle_lists(const assay_bundle_reader *reader, const char *name);
  * NOT_FOUND, LIMIT, MEMORY. */
 assay_status assay_bundle_read_table(assay_bundle_reader *reader, const char *name, size_t rows,
                                      size_t columns, assay_array **table_out);
+
+/* ---- bundles that others wrote ---- */
+
+/* Longest name of an array, and its NUL. */
+#define ASSAY_BUNDLE_NAME 96
+
+/* What the manifest says of an array; texts are borrowed. */
+typedef struct {
+    const char *name, *file, *unit, *dtype;
+    const char *digest; /* SHA-256 of its file; NULL: none is listed */
+    bool        image;  /* .exr, else .npy                           */
+    size_t      dimensions, shape[3];
+} assay_bundle_entry;
+
+int assay_bundle_count(const assay_bundle_reader *reader);
+/* Errors: FORMAT (no name or one that is no file's in the folder; no file, unit, dtype or shape).
+ */
+assay_status assay_bundle_entry_at(const assay_bundle_reader *reader, int index,
+                                   assay_bundle_entry *entry_out);
+/* Whether the manifest lists an array of this name, whatever else it says of it. */
+bool assay_bundle_has(const assay_bundle_reader *reader, const char *name);
+/* Errors: as above; FORMAT (not listed). */
+assay_status assay_bundle_entry_of(const assay_bundle_reader *reader, const char *name,
+                                   assay_bundle_entry *entry_out);
+
+/* All that stands at the top of the manifest: its key; *value_out is NULL where it is no text. */
+int         assay_bundle_text_count(const assay_bundle_reader *reader);
+const char *assay_bundle_text_at(const assay_bundle_reader *reader, int index,
+                                 const char **value_out);
+
+/* An array of any kind: a table as it is; of an image a row a pixel, row by row from the top left,
+ * with the channels named ("R G B"; NULL: all, by name) as columns.  Errors: FORMAT (the file is
+ * not what the manifest lists: digest, shape, dtype, channels), NOT_FOUND, UNSUPPORTED, LIMIT,
+ * MEMORY. */
+assay_status assay_bundle_read_array(const assay_bundle_reader *reader, const char *name,
+                                     const char *channels, assay_array **table_out);
 
 #endif

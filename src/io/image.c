@@ -9,7 +9,7 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/hash.h"
-#include "io/compare_channels.h"
+#include "io/image_access.h"
 #include "io/image_data.h"
 #include "io/image_decode.h"
 #include "io/read_file.h"
@@ -64,6 +64,17 @@ void assay_image_destroy(assay_image *image)
 }
 
 assay_context *assay_image_context(const assay_image *image) { return image->context; }
+
+assay_status assay_images_check_sizes(const assay_image *a, const assay_image *b)
+{
+    if (assay_image_width(a) == assay_image_width(b) &&
+        assay_image_height(a) == assay_image_height(b)) {
+        return ASSAY_OK;
+    }
+    return assay_fail(assay_image_context(a), ASSAY_ERR_ARGUMENT,
+                      "the images differ in size: %d x %d and %d x %d pixels", assay_image_width(a),
+                      assay_image_height(a), assay_image_width(b), assay_image_height(b));
+}
 
 int assay_image_width(const assay_image *image) { return image->width; }
 
@@ -270,14 +281,20 @@ assay_status assay_image_decode(assay_context *context, const uint8_t *bytes, si
                       "%s: neither an OpenEXR nor a Radiance (.hdr) image", name);
 }
 
-assay_status assay_image_read(assay_context *context, const char *path, assay_image **image_out)
+assay_status assay_image_read_channels(assay_context *context, const char *path,
+                                       const char *const *wanted, assay_image **image_out)
 {
     uint8_t     *bytes  = NULL;
     size_t       count  = 0;
     assay_status status = assay_read_file(context, path, ASSAY_IMAGE_MAX_FILE, &bytes, &count);
     if (status == ASSAY_OK) {
-        status = assay_image_decode(context, bytes, count, path, NULL, image_out);
+        status = assay_image_decode(context, bytes, count, path, wanted, image_out);
         assay_release(context, bytes);
     }
     return status;
+}
+
+assay_status assay_image_read(assay_context *context, const char *path, assay_image **image_out)
+{
+    return assay_image_read_channels(context, path, NULL, image_out);
 }

@@ -11,4 +11,8 @@ assay_status assay_image_decode(assay_context *context, const uint8_t *bytes, si
                                 const char *name, const char *const *wanted,
                                 assay_image **image_out);
 
+/* The same for a file: assay_image_read with `wanted` as above. */
+assay_status assay_image_read_channels(assay_context *context, const char *path,
+                                       const char *const *wanted, assay_image **image_out);
+
 #endif

@@ -12,6 +12,7 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "io/array_data.h"
+#include "io/half.h"
 #include "io/npy.h"
 #include "io/read_file.h"
 
@@ -163,15 +164,24 @@ static bool parse_header(header_text text, npy_header *header)
     return text.at == text.end && header->has_descr && header->has_order && header->has_shape;
 }
 
+/* 0 for what is no float of the little end. */
+static size_t item_bytes_of(const char *descr)
+{
+    return strcmp(descr, "<f8") == 0   ? 8
+           : strcmp(descr, "<f4") == 0 ? 4
+           : strcmp(descr, "<f2") == 0 ? 2
+                                       : 0;
+}
+
 /* Refuses what is well-formed but not a table of floats. */
 static assay_status check_header(assay_context *context, const char *name, npy_header *header,
                                  size_t bytes_left, size_t *item_bytes_out)
 {
-    const bool wide = strcmp(header->descr, "<f8") == 0;
-    if (!wide && strcmp(header->descr, "<f4") != 0) {
+    const size_t item_bytes = item_bytes_of(header->descr);
+    if (item_bytes == 0) {
         return assay_fail(context, ASSAY_ERR_UNSUPPORTED,
-                          "%s: the values are of type '%s'; save them as '<f8' or '<f4'", name,
-                          header->descr);
+                          "%s: the values are of type '%s'; save them as '<f8', '<f4' or '<f2'",
+                          name, header->descr);
     }
     if (header->fortran) {
         return assay_fail(context, ASSAY_ERR_UNSUPPORTED,
@@ -193,8 +203,8 @@ static assay_status check_header(assay_context *context, const char *name, npy_h
                           name, (unsigned long long)rows, (unsigned long long)columns,
                           (unsigned long long)ASSAY_ARRAY_MAX_VALUES);
     }
-    *item_bytes_out       = wide ? 8 : 4;
-    const uint64_t needed = rows * columns * *item_bytes_out;
+    *item_bytes_out       = item_bytes;
+    const uint64_t needed = rows * columns * item_bytes;
     if (needed != bytes_left) {
         return assay_fail(context, ASSAY_ERR_FORMAT,
                           "%s: %llu x %llu values need %llu bytes, and %zu are there", name,
@@ -210,9 +220,10 @@ static double read_value(const uint8_t *bytes, size_t item_bytes)
     for (size_t i = 0; i < item_bytes; i++) {
         bits |= (uint64_t)bytes[i] << (8 * i);
     }
-    if (item_bytes == 4) {
-        const uint32_t low = (uint32_t)bits;
-        float          f;
+    if (item_bytes < 8) {
+        const uint32_t low =
+            item_bytes == 4 ? (uint32_t)bits : assay_half_to_float_bits((uint16_t)bits);
+        float f;
         memcpy(&f, &low, sizeof f);
         return f;
     }
@@ -268,6 +279,7 @@ assay_status assay_array_decode_npy(assay_context *context, const uint8_t *bytes
         assay_array_destroy(array);
         return status;
     }
+    array->file_bytes = item_bytes;
     for (size_t i = 0; i < array->rows * array->columns; i++) {
         array->values[i] = read_value(values + i * item_bytes, item_bytes);
     }

@@ -1,4 +1,4 @@
-/* radiance_bundle.h - radiance records as arrays of a bundle (docs/bundles.md): those of
+/* radiance_bundle.h - radiance records as arrays of a bundle (docs/bundle.md): those of
  * record_bundle.h, and a row of coefficients and of gradients a record. */
 #ifndef ASSAY_RECORD_RADIANCE_BUNDLE_H
 #define ASSAY_RECORD_RADIANCE_BUNDLE_H

@@ -1,4 +1,4 @@
-/* record_bundle.h - irradiance records as arrays of a bundle (docs/bundles.md), row by row in the
+/* record_bundle.h - irradiance records as arrays of a bundle (docs/bundle.md), row by row in the
  * order in which they were made. */
 #ifndef ASSAY_RECORD_RECORD_BUNDLE_H
 #define ASSAY_RECORD_RECORD_BUNDLE_H

@@ -44,6 +44,7 @@ static const shape shapes[] = {
     {"sh_rotation_16", 4, 33, 7 * 33},
     {"sh_rotation_32", 4, 65, 5 * 65},
     {"sh_values", 3, 33 * 33, 60},
+    {"student_tail", 2, 1, 156},
     {"zernike_values", 3, 17 * 18 / 2, 18},
 };
 #define SHAPE_COUNT (sizeof shapes / sizeof shapes[0])

@@ -132,6 +132,22 @@ static void accepted_headers(void **state)
     }
 }
 
+/* Halves: 1.5, -2, the largest, the smallest subnormal, infinity. */
+static void half_values(void **state)
+{
+    static const uint16_t halves[]   = {0x3e00, 0xc000, 0x7bff, 0x0001, 0x7c00};
+    static const double   expected[] = {1.5, -2.0, 65504.0, 0x1p-24, INFINITY};
+    uint8_t               bytes[300];
+    assay_array          *array = NULL;
+    const size_t          count =
+        make_file(bytes, 1, "{'descr': '<f2', 'fortran_order': False, 'shape': (5,), }", halves,
+                  sizeof halves);
+    assert_int_equal(assay_array_decode_npy(*state, bytes, count, "x", &array), ASSAY_OK);
+    assert_int_equal(assay_array_rows(array), 5);
+    assert_memory_equal(assay_array_values(array), expected, sizeof expected);
+    assay_array_destroy(array);
+}
+
 static void refused_headers(void **state)
 {
     static const double values[] = {1.5, -2.0, 3.25, 4.0, 5.0, 6.0};
@@ -259,6 +275,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(tables_are_zero_and_limited, set_up, tear_down),
         cmocka_unit_test_setup_teardown(round_trip_is_bit_exact, set_up, tear_down),
         cmocka_unit_test_setup_teardown(accepted_headers, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(half_values, set_up, tear_down),
         cmocka_unit_test_setup_teardown(refused_headers, set_up, tear_down),
         cmocka_unit_test(broken_files_are_refused),
         cmocka_unit_test_setup_teardown(files_are_told, set_up, tear_down),

@@ -1,4 +1,4 @@
-/* splat_dump.h - the steps of algorithm 4 as tables of a bundle, a row a pixel (docs/bundles.md).
+/* splat_dump.h - the steps of algorithm 4 as tables of a bundle, a row a pixel (docs/bundle.md).
  */
 #ifndef ASSAY_METHODS_SPLAT_DUMP_H
 #define ASSAY_METHODS_SPLAT_DUMP_H

@@ -1,0 +1,41 @@
+/* verify_bundles.c - a folder is taken for a bundle, all else for an image. */
+#include "verify_bundles.h"
+
+#include <sys/stat.h>
+
+bool cli_is_bundle(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
+const char *cli_bundle_check(const cli_bundle_request *request, int count, const char *candidate)
+{
+    if (!cli_is_bundle(candidate)) {
+        return request->scene ? "--scene goes with bundles" : NULL;
+    }
+    return count > 1 ? "one bundle at a time" : cli_scene_check(&request->options);
+}
+
+assay_status cli_verify_bundle(assay_context *context, const char *candidate, const char *reference,
+                               const cli_bundle_request *request, assay_precision precision,
+                               assay_verdict **verdict_out)
+{
+    assay_scene   *scene   = NULL;
+    assay_verdict *verdict = NULL;
+    assay_status   status  = assay_verdict_create(context, candidate,
+                                               reference ? reference : "its own inputs", &verdict);
+    if (status == ASSAY_OK && request->scene) {
+        status = assay_scene_load(context, request->scene, &request->options.options, &scene);
+        status = status ? status : assay_scene_set_time(scene, request->time);
+    }
+    status = status ? status
+                    : assay_verify_bundle(context, candidate, reference, scene, precision, verdict);
+    assay_scene_destroy(scene);
+    if (status != ASSAY_OK) {
+        assay_verdict_destroy(verdict);
+        return status;
+    }
+    *verdict_out = verdict;
+    return ASSAY_OK;
+}

@@ -1,0 +1,26 @@
+/* verify_bundles.h - the part of `assay verify` that is about bundles. */
+#ifndef ASSAY_CLI_VERIFY_BUNDLES_H
+#define ASSAY_CLI_VERIFY_BUNDLES_H
+
+#include "assay/replay.h"
+#include "scene_options.h"
+
+typedef struct {
+    const char       *scene; /* NULL without */
+    double            time;  /* s            */
+    cli_scene_request options;
+} cli_bundle_request;
+
+/* Whether the path is a folder. */
+bool cli_is_bundle(const char *path);
+
+/* What the options say together with so many candidates, the first of them named; NULL, or what is
+ * wrong. */
+const char *cli_bundle_check(const cli_bundle_request *request, int count, const char *candidate);
+
+/* reference NULL: stages are judged on the inputs of the candidate alone. */
+assay_status cli_verify_bundle(assay_context *context, const char *candidate, const char *reference,
+                               const cli_bundle_request *request, assay_precision precision,
+                               assay_verdict **verdict_out);
+
+#endif

@@ -1,0 +1,38 @@
+/* stage_list.c - the stages: one line each, in the order of the data's way. */
+#include "oracle/stage_list.h"
+
+#include <string.h>
+
+#include "core/context.h"
+
+/* clang-format off */
+const oracle_stage *const assay_stages[] = {
+    &stage_visible,
+    &stage_gather,
+    &stage_irradiance,
+    &stage_weights,
+    &stage_interpolate,
+    &stage_splat,
+    &stage_normalise,
+    &stage_combine,
+    &stage_project,
+    &stage_rotate,
+    &stage_convert,
+    &stage_reflect,
+    NULL,
+};
+/* clang-format on */
+
+const oracle_stage *assay_stage_find(const char *name)
+{
+    for (int i = 0; assay_stages[i]; i++) {
+        if (strcmp(assay_stages[i]->info.name, name) == 0) {
+            return assay_stages[i];
+        }
+    }
+    return NULL;
+}
+
+int assay_stage_count(void) { return (int)(sizeof assay_stages / sizeof assay_stages[0]) - 1; }
+
+assay_stage_info assay_stage_at(int index) { return assay_stages[index]->info; }

@@ -1,0 +1,11 @@
+/* stage_list.h - the stages, one file each; for stage_list.c and these files. */
+#ifndef ASSAY_ORACLE_STAGE_LIST_H
+#define ASSAY_ORACLE_STAGE_LIST_H
+
+#include "oracle/stage.h"
+
+extern const oracle_stage stage_visible, stage_gather, stage_irradiance, stage_weights,
+    stage_interpolate, stage_splat, stage_normalise, stage_combine, stage_project, stage_rotate,
+    stage_convert, stage_reflect;
+
+#endif

@@ -1,0 +1,100 @@
+/* stage_meaning.c - guesses, none of which changes a verdict.
+ *
+ * A guess counts where it leaves a thousandth of the difference that is to be explained (by sums of
+ * squares), so that a few values that are wrong by themselves make no theory. */
+#include "oracle/stage_meaning.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+static const double EXPLAINED = 1e-6;
+
+typedef struct {
+    double wrong, left; /* squares of value - right, and of what a guess leaves of it */
+} misfit;
+
+static void add(misfit *m, double value, double right, double guess)
+{
+    if (isfinite(value) && isfinite(right) && isfinite(guess)) {
+        m->wrong += (value - right) * (value - right);
+        m->left += (value - guess) * (value - guess);
+    }
+}
+
+static bool explains(const misfit *m) { return m->wrong > 0.0 && m->left <= EXPLAINED * m->wrong; }
+
+/* The best common factor. */
+static double factor_of(size_t count, const double *values, const double *right)
+{
+    double both = 0.0, square = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        if (isfinite(values[i]) && isfinite(right[i])) {
+            both += values[i] * right[i];
+            square += right[i] * right[i];
+        }
+    }
+    return square > 0.0 ? both / square : NAN;
+}
+
+static bool is_factor(size_t count, const double *values, const double *right, double factor)
+{
+    misfit m = {0.0, 0.0};
+    for (size_t i = 0; i < count; i++) {
+        add(&m, values[i], right[i], factor * right[i]);
+    }
+    return explains(&m);
+}
+
+/* Columns in threes, the first of three for the last. */
+static bool is_reversed(size_t columns, size_t count, const double *values, const double *right)
+{
+    misfit m = {0.0, 0.0};
+    for (size_t i = 0; columns % 3 == 0 && i < count; i++) {
+        const size_t of_three = i % 3;
+        add(&m, values[i], right[i], right[i - of_three + (2 - of_three)]);
+    }
+    return explains(&m);
+}
+
+/* Columns of three vectors: x y z of R, G, B for R G B of x, y, z. */
+static bool is_transposed(size_t columns, size_t count, const double *values, const double *right)
+{
+    misfit m = {0.0, 0.0};
+    for (size_t i = 0; columns == 9 && i < count; i++) {
+        const size_t at = i % 9;
+        add(&m, values[i], right[i], right[i - at + 3 * (at % 3) + at / 3]);
+    }
+    return explains(&m);
+}
+
+static size_t count_different(size_t count, const double *values, const double *right)
+{
+    size_t different = 0;
+    for (size_t i = 0; i < count; i++) {
+        different += values[i] != right[i];
+    }
+    return different;
+}
+
+void stage_meaning(size_t columns, size_t count, const double *values, const double *right,
+                   char *words, size_t size)
+{
+    const double factor = factor_of(count, values, right);
+    if (isfinite(factor) && is_factor(count, values, right, factor)) {
+        if (fabs(factor + 1.0) < 1e-3) {
+            snprintf(words, size, "all values have the wrong sign");
+        } else {
+            snprintf(words, size, "all values are %.6g times what they should be", factor);
+        }
+    } else if (is_reversed(columns, count, values, right)) {
+        snprintf(words, size, "the first and the third of every three columns are exchanged");
+    } else if (is_transposed(columns, count, values, right)) {
+        snprintf(words, size, "vectors of channels and channels of vectors are exchanged");
+    } else {
+        snprintf(words, size,
+                 "the inputs of this stage are the candidate's own: the error is made "
+                 "in it (%zu of %zu values differ)",
+                 count_different(count, values, right), count);
+    }
+}

@@ -1,0 +1,341 @@
+/* stage_splat.c - stage `splat`: given records splatted on a given G-buffer, batch after batch, as
+ * the dump of method `splat` tells it (docs/bundle.md).
+ *
+ * The bounds of spheres in the image only leave out what weighs nothing, so a pixel's sums do not
+ * depend on them: bounds are analysed pixel by pixel, over the records near its point. */
+#include <string.h>
+
+#include "core/alloc.h"
+#include "core/context.h"
+#include "core/parallel.h"
+#include "methods/cached_image.h"
+#include "oracle/stage_camera.h"
+#include "oracle/stage_list.h"
+#include "oracle/stage_records.h"
+#include "record/splat.h"
+
+enum { SPLAT_POSITION = RECORDS_INPUTS, SPLAT_FRAME, SPLAT_ALBEDO, SPLAT_ENDS, CHUNK = 64 };
+enum { OUT_WEIGHT, OUT_RADIANCE };
+
+/* clang-format off */
+static const assay_param_desc PARAMS[] = {
+    STAGE_RULE_PARAMS, STAGE_SAID_PARAMS,
+    {"splat_a", ASSAY_PARAM_REAL, "", "0", 0, 1e3, NULL,
+     "Accuracy of the last batch; 0: a.", "[gautron06] fig. 4.12"},
+    {"variant", ASSAY_PARAM_CHOICE, "", "corrected", 0, 0, "corrected|published",
+     "published: the last batch has the records of the first one twice.",
+     "[gautron06] algorithm 4"},
+    {"neighbour_clamp", ASSAY_PARAM_BOOL, "", "off", 0, 0, NULL,
+     "Records shrink while others are made: the last batch alone can be replayed.",
+     "[krivanek06]"},
+    {0}};
+
+static const assay_stage_array INPUTS[] = {
+    STAGE_RECORD_ARRAYS,
+    {"splat/position", "m", "X Y Z", "pixel", "its point; NaN where there is none",
+     false, true, false},
+    {"splat/frame", "", "Xx Xy Xz Yx Yy Yz Zx Zy Zz", "pixel",
+     "frame whose z is the normal on the viewer's side", false, true, false},
+    {"splat/albedo", "", "R G B", "pixel", "of the Lambertian part", false, false, false},
+    {"splat/batch_end", "records", "K", "batch",
+     "how many records it has; without it one batch has all", true, false, false},
+    {0}};
+
+static const assay_stage_array OUTPUTS[] = {
+    {"splat/batch.#/weight", "", "W", "pixel", "sum of weights", false, false, false},
+    {"splat/batch.#/radiance", "W/(m2 sr)", "R G B", "pixel",
+     "sum of weight times outgoing radiance", false, false, false},
+    {0}};
+/* clang-format on */
+
+/* A batch: records [0, old) once more, and [0, end), at an accuracy. */
+typedef struct {
+    uint32_t      old, end;
+    double        a;
+    stage_output *weight, *radiance;
+} batch;
+
+typedef struct {
+    stage_run          *run;
+    stage_records      *records;
+    assay_record_store *store;
+    assay_splat_buffer *buffer;
+    assay_vec3         *normals;
+    size_t              pixels, batch_count;
+    batch              *batches;
+    stage_candidates   *near; /* a worker */
+    assay_octree_walk  *walks;
+} job_data;
+
+static bool has_point(const job_data *job, size_t pixel)
+{
+    return !isnan(job->run->in[SPLAT_POSITION].values[3 * pixel]);
+}
+
+/* ---- what the bundle says ---- */
+
+/* Normals: the frames' z, of pixels that have a point. */
+static assay_status take_points(job_data *job)
+{
+    stage_run         *run      = job->run;
+    const stage_table *position = &run->in[SPLAT_POSITION], *frame = &run->in[SPLAT_FRAME];
+    job->pixels  = position->rows;
+    job->normals = assay_allocate(run->context, job->pixels, sizeof *job->normals);
+    if (!job->normals) {
+        return assay_fail_memory(run->context, "a G-buffer");
+    }
+    const double allowed = fmax(1e-6, 4.0 * frame->roundoff);
+    for (int i = SPLAT_FRAME; i <= SPLAT_ALBEDO; i++) {
+        if (run->in[i].rows != job->pixels) {
+            return stage_fail_rows(run, i, job->pixels, "one a pixel, as of splat/position");
+        }
+    }
+    for (size_t i = 0; i < job->pixels; i++) {
+        const assay_vec3 p = stage_vec3(position->values + 3 * i);
+        if (!has_point(job, i)) {
+            continue;
+        }
+        job->normals[i] = stage_vec3(frame->values + 9 * i + 6);
+        if (!vec3_finite(p)) {
+            return stage_fail_value(run, SPLAT_POSITION, i, 0, "not a position");
+        }
+        if (!(fabs(vec3_length(job->normals[i]) - 1.0) <= allowed)) {
+            return stage_fail_value(run, SPLAT_FRAME, i, 6, "a vector that is not of unit length");
+        }
+    }
+    return ASSAY_OK;
+}
+
+static assay_status take_batches(job_data *job)
+{
+    stage_run         *run     = job->run;
+    const stage_table *ends    = &run->in[SPLAT_ENDS];
+    const size_t       count   = ends->values ? ends->rows : 1;
+    const double       splat_a = assay_params_real(run->params, "splat_a");
+    const bool         twice   = assay_params_choice(run->params, "variant") == 1;
+    const bool         shrinks = assay_params_bool(run->params, "neighbour_clamp");
+    job->batches               = assay_allocate(run->context, count, sizeof *job->batches);
+    if (!job->batches) {
+        return assay_fail_memory(run->context, "batches");
+    }
+    double before = 0.0;
+    for (size_t k = 0; k < count; k++) {
+        const double end  = ends->values ? ends->values[k] : (double)job->records->count;
+        const bool   last = k + 1 == count;
+        if (!(end >= before && end <= (double)job->records->count && end == assay_floor(end))) {
+            return stage_fail_value(run, SPLAT_ENDS, k, 0,
+                                    "not a number of records, no less than the one before");
+        }
+        before = end;
+        if (last || !shrinks) {
+            batch *b = &job->batches[job->batch_count++];
+            b->end   = (uint32_t)end;
+            b->old   = last && twice && ends->values ? (uint32_t)ends->values[0] : 0;
+            b->a     = last && splat_a > 0.0 ? splat_a : job->records->rules.a;
+            assay_status status =
+                stage_output_make(run, OUT_WEIGHT, (int)k, job->pixels, 1, &b->weight);
+            status =
+                status ? status
+                       : stage_output_make(run, OUT_RADIANCE, (int)k, job->pixels, 3, &b->radiance);
+            if (status != ASSAY_OK) {
+                return status;
+            }
+        }
+    }
+    return ASSAY_OK;
+}
+
+/* ---- values ---- */
+
+static assay_status open_buffer(job_data *job)
+{
+    stage_run         *run  = job->run;
+    const stage_camera view = stage_camera_read(run, job->pixels);
+    assay_status       status =
+        assay_splat_buffer_create(run->context, view.width, view.height, &job->buffer);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    assay_splat_buffer_look(job->buffer, &view.camera);
+    for (size_t i = 0; i < job->pixels; i++) {
+        if (has_point(job, i)) {
+            assay_splat_buffer_set(job->buffer, i,
+                                   stage_vec3(run->in[SPLAT_POSITION].values + 3 * i),
+                                   job->normals[i]);
+        }
+    }
+    return assay_splat_buffer_close(job->buffer);
+}
+
+static assay_status open_store(job_data *job)
+{
+    /* Nothing is looked up in it: splatting goes from records to pixels. */
+    assay_status status =
+        assay_record_store_create(job->run->context, &job->records->rules, vec3(0, 0, 0),
+                                  vec3(0, 0, 0), ASSAY_INDEX_LIST, &job->store);
+    for (size_t i = 0; i < job->records->count && status == ASSAY_OK; i++) {
+        status = assay_record_store_add(job->store, &job->records->records[i]);
+    }
+    return status;
+}
+
+static void take_sums(const job_data *job, const batch *b)
+{
+    for (size_t i = 0; i < job->pixels; i++) {
+        const double   *c      = job->run->in[SPLAT_ALBEDO].values + 3 * i;
+        const assay_rgb albedo = rgb(c[0], c[1], c[2]);
+        const assay_rgb sum =
+            assay_cached_point_sum(albedo, assay_splat_sum(job->buffer, i), NULL, false);
+        b->weight->values[i] = assay_splat_weight(job->buffer, i);
+        memcpy(b->radiance->values + 3 * i, &sum, sizeof sum);
+    }
+}
+
+static assay_status splat_batches(job_data *job)
+{
+    assay_splat_source source = {.store = job->store, .rules = job->records->rules};
+    uint32_t           done   = 0;
+    assay_status       status = ASSAY_OK;
+    for (size_t k = 0; k < job->batch_count && status == ASSAY_OK; k++) {
+        const batch *b = &job->batches[k];
+        if (b->a != source.rules.a || b->old > 0) {
+            source.rules.a = b->a;
+            assay_splat_buffer_clear(job->buffer);
+            status = assay_splat_records(job->buffer, &source, 0, b->old);
+            done   = 0;
+        }
+        status = status ? status : assay_splat_records(job->buffer, &source, done, b->end);
+        done   = b->end;
+        take_sums(job, b);
+    }
+    return status;
+}
+
+/* ---- bounds ---- */
+
+typedef struct {
+    tracked_sum weight, light[3];
+} pixel_sums;
+
+/* A term of both sums.  weight times what is said: in [low, high] times [v - e, v + e]. */
+static void add_term(const rounding *r, pixel_sums *sums, const weight_bound *w, double counts,
+                     const tracked said[3])
+{
+    const double  low    = w->member == BOUND_IN ? w->low : 0.0;
+    const tracked weight = {counts, fmax(w->high - counts, counts - low)};
+    tracked_sum_add(&sums->weight, weight);
+    for (int c = 0; c < 3; c++) {
+        tracked_sum_add(&sums->light[c], tracked_mul(r, weight, said[c]));
+    }
+}
+
+static assay_status bound_pixel(const job_data *job, const batch *b, size_t pixel,
+                                const stage_candidates *near)
+{
+    const rounding    *r     = &job->run->rounding;
+    assay_record_rules rules = job->records->rules;
+    const assay_vec3   p     = stage_vec3(job->run->in[SPLAT_POSITION].values + 3 * pixel);
+    const assay_vec3   n     = job->normals[pixel];
+    pixel_sums         sums  = {0};
+    rules.a                  = b->a;
+    for (size_t i = 0; i < near->count && near->items[i] < b->end; i++) {
+        const assay_record *record = &job->records->records[near->items[i]];
+        const weight_bound  w = record_weight_bound(r, job->records->exact, record, &rules, p, n);
+        if (w.member != BOUND_OUT) {
+            tracked      said[3];
+            const double counts = assay_record_weight(record, &rules, p, n);
+            record_said_bound(r, job->records->exact, record, &rules, p, n, said);
+            for (int times = near->items[i] < b->old ? 2 : 1; times > 0; times--) {
+                add_term(r, &sums, &w, counts, said);
+            }
+        }
+    }
+    b->weight->bounds[pixel] = tracked_sum_of(r, &sums.weight).e;
+    for (int c = 0; c < 3; c++) {
+        const tracked albedo =
+            tracked_given(r, job->run->in[SPLAT_ALBEDO].values[3 * pixel + (size_t)c]);
+        const tracked share = tracked_mul(r, albedo, tracked_constant(r, ASSAY_INV_PI));
+        /* Each term may be multiplied, or the sum. */
+        b->radiance->bounds[3 * pixel + (size_t)c] =
+            tracked_mul(r, share, tracked_sum_of(r, &sums.light[c])).e +
+            r->u * sums.light[c].size * fabs(share.v);
+    }
+    return ASSAY_OK;
+}
+
+static assay_status bound_pixels(void *user, uint64_t chunk, int worker)
+{
+    const job_data   *job  = user;
+    stage_candidates *near = &job->near[worker];
+    for (size_t i = chunk * CHUNK; i < (chunk + 1) * CHUNK && i < job->pixels; i++) {
+        if (!has_point(job, i)) {
+            continue;
+        }
+        const assay_vec3 p = stage_vec3(job->run->in[SPLAT_POSITION].values + 3 * i);
+        if (stage_records_near(job->records, &job->walks[worker], p, near) != ASSAY_OK) {
+            return ASSAY_ERR_MEMORY;
+        }
+        for (size_t k = 0; k < job->batch_count; k++) {
+            bound_pixel(job, &job->batches[k], i, near);
+        }
+    }
+    return ASSAY_OK;
+}
+
+static assay_status bound_all(job_data *job)
+{
+    stage_run   *run     = job->run;
+    const size_t threads = (size_t)assay_context_threads(run->context);
+    job->near            = assay_allocate(run->context, threads, sizeof *job->near);
+    job->walks           = assay_allocate(run->context, threads, sizeof *job->walks);
+    if (!job->near || !job->walks) {
+        return assay_fail_memory(run->context, "pixels");
+    }
+    const assay_status status =
+        stage_records_index(job->records, &run->rounding, job->pixels,
+                            run->in[SPLAT_POSITION].values, job->batches[job->batch_count - 1].a);
+    return status ? status
+                  : assay_parallel_for(run->context, NULL, (job->pixels + CHUNK - 1) / CHUNK,
+                                       bound_pixels, job);
+}
+
+/* ---- all of it ---- */
+
+static void close_job(job_data *job)
+{
+    assay_context *context = job->run->context;
+    for (int i = 0; job->near && i < assay_context_threads(context); i++) {
+        assay_release(context, job->near[i].items);
+    }
+    assay_release(context, job->near);
+    assay_release(context, job->walks);
+    assay_release(context, job->normals);
+    assay_release(context, job->batches);
+    assay_splat_buffer_destroy(job->buffer);
+    assay_record_store_destroy(job->store);
+}
+
+static assay_status run_splat(stage_run *run)
+{
+    stage_records records = {0};
+    job_data      job     = {.run = run, .records = &records};
+    assay_status  status  = stage_records_open(run, true, &records);
+    status                = status ? status : take_points(&job);
+    status                = status ? status : take_batches(&job);
+    status                = status ? status : open_buffer(&job);
+    status                = status ? status : open_store(&job);
+    status                = status ? status : splat_batches(&job);
+    if (status == ASSAY_OK && run->bounded && job.batch_count > 0) {
+        status = bound_all(&job);
+    }
+    close_job(&job);
+    stage_records_close(&records);
+    return status == ASSAY_ERR_MEMORY ? assay_fail_memory(run->context, "splatting") : status;
+}
+
+const oracle_stage stage_splat = {.info = {.name    = "splat",
+                                           .summary = "given records splatted on a given G-buffer",
+                                           .params  = PARAMS,
+                                           .inputs  = INPUTS,
+                                           .outputs = OUTPUTS},
+                                  .run  = run_splat};

@@ -1,0 +1,139 @@
+/* verdict_text.c - a verdict in words.
+ *
+ * Invariant: a number is printed as a decimal that reads back to the same bits, and where bits
+ * matter as a hexadecimal one beside it; what is NaN in a finding is not spoken of. */
+#include <math.h>
+
+#include "core/numerics.h"
+#include "oracle/verdict_data.h"
+
+void assay_finding_add_name(assay_text_builder *text, const assay_finding *finding)
+{
+    const bool channel = finding->channel && *finding->channel;
+    assay_text_add(text, "%s%s%s, test %s", finding->array, channel ? "." : "",
+                   channel ? finding->channel : "", finding->test);
+}
+
+void assay_finding_add_place(assay_text_builder *text, const assay_finding *finding)
+{
+    const assay_place *place = &finding->place;
+    switch (place->kind) {
+    case ASSAY_PLACE_ROW:
+        assay_text_add(text, " at row %llu, column %d", (unsigned long long)place->row,
+                       place->column);
+        break;
+    case ASSAY_PLACE_PIXEL: assay_text_add(text, " at pixel (%d, %d)", place->x, place->y); break;
+    case ASSAY_PLACE_TILE:
+        assay_text_add(text, " in the tile of %d x %d pixels at (%d, %d)", place->width,
+                       place->height, place->x, place->y);
+        break;
+    case ASSAY_PLACE_NONE: break;
+    }
+}
+
+static void add_values(assay_text_builder *text, const assay_finding *f)
+{
+    if (!isnan(f->candidate) && !isnan(f->reference)) {
+        assay_text_add(text, ": candidate %.17g (%a), reference %.17g (%a)", f->candidate,
+                       f->candidate, f->reference, f->reference);
+    }
+}
+
+/* p below what a double holds is told by its power of ten. */
+static void add_probability(assay_text_builder *text, const assay_finding *f)
+{
+    if (!isnan(f->log_p) && f->log_p < -600.0) {
+        assay_text_add(text, "; p = 10^%.0f", f->log_p / assay_log(10.0));
+    } else if (!isnan(f->p)) {
+        assay_text_add(text, "; p = %.3g", f->p);
+    }
+}
+
+void assay_finding_add_sentences(assay_text_builder *text, const assay_finding *f)
+{
+    assay_finding_add_name(text, f);
+    assay_finding_add_place(text, f);
+    add_values(text, f);
+    if (!isnan(f->effect)) {
+        assay_text_add(text, "; effect %+.4g", f->effect);
+    }
+    if (!isnan(f->in_bounds)) {
+        assay_text_add(text, "; %.4g times what passes", f->in_bounds);
+    }
+    if (!isnan(f->bound)) {
+        assay_text_add(text, " (%.4g)", f->bound);
+    }
+    if (!isnan(f->ulps)) {
+        assay_text_add(text, "; %.4g ulps", f->ulps);
+    }
+    add_probability(text, f);
+    if (!isnan(f->visible)) {
+        assay_text_add(text, "; smallest bias that would have been seen %.4g", f->visible);
+    }
+    if (f->values > 0) {
+        assay_text_add(text, "; %llu values", (unsigned long long)f->values);
+    }
+    assay_text_add_char(text, '.');
+    if (f->meaning && *f->meaning) {
+        assay_text_add(text, " %s", f->meaning);
+    }
+}
+
+static size_t count_kind(const assay_verdict *verdict, assay_verdict_kind kind)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < verdict->count; i++) {
+        count += verdict->findings[i].kind == kind;
+    }
+    return count;
+}
+
+static void add_head(assay_text_builder *text, const assay_verdict *verdict)
+{
+    const size_t failed = count_kind(verdict, ASSAY_VERDICT_FAIL);
+    const size_t unsure = count_kind(verdict, ASSAY_VERDICT_CANNOT_TELL);
+    switch (assay_verdict_whole(verdict)) {
+    case ASSAY_VERDICT_PASS:
+        assay_text_add(text, "PASS: %s against %s: no difference in %zu tests.", verdict->candidate,
+                       verdict->reference, verdict->count);
+        break;
+    case ASSAY_VERDICT_FAIL:
+        assay_text_add(text, "FAIL: %s differs from %s in %zu of %zu tests", verdict->candidate,
+                       verdict->reference, failed, verdict->count);
+        if (unsure > 0) {
+            assay_text_add(text, "; %zu more cannot tell", unsure);
+        }
+        assay_text_add_char(text, '.');
+        break;
+    case ASSAY_VERDICT_CANNOT_TELL:
+        assay_text_add(text, "CANNOT TELL whether %s agrees with %s: %zu of %zu tests cannot.",
+                       verdict->candidate, verdict->reference, unsure, verdict->count);
+        break;
+    }
+}
+
+/* What a pass is worth. */
+static void add_worth(assay_text_builder *text, const assay_verdict *verdict)
+{
+    const char *worth = assay_verdict_get(verdict, "power");
+    if (worth && *worth) {
+        assay_text_add(text, " %s", worth);
+    }
+}
+
+assay_status assay_verdict_paragraph(const assay_verdict *verdict, char **text_out)
+{
+    assay_text_builder text  = assay_text_start(verdict->context);
+    const int          first = assay_verdict_first(verdict);
+    add_head(&text, verdict);
+    if (first >= 0) {
+        const assay_finding *f = &verdict->findings[first];
+        assay_text_add(&text,
+                       f->kind == ASSAY_VERDICT_FAIL ? " First stage that is wrong: %s. "
+                                                     : " First stage in doubt: %s. ",
+                       f->stage);
+        assay_finding_add_sentences(&text, f);
+    }
+    add_worth(&text, verdict);
+    return assay_text_finish(&text, "a verdict's paragraph", text_out);
+}

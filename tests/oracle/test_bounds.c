@@ -1,0 +1,161 @@
+/* test_bounds.c - bounds by themselves: extremes by trying all of them, and the worst cases that
+ * chance does not find. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "core/numerics.h"
+#include "oracle/basis_bound.h"
+#include "oracle/irradiance_bound.h"
+#include "oracle/mean_bound.h"
+#include "support/measure.h"
+#include "support/near.h"
+#include "support/random_places.h"
+
+static const rounding FLOAT = {.u = 0x1p-24, .tiny = 0x1p-126, .given = 0x1p-24};
+
+/* Largest and smallest mean over every choice of ends. */
+static void test_means(void **state)
+{
+    enum { MOST = 9 };
+    assay_random random = assay_random_start(1, ASSAY_STAGE_TEST, 5, 0);
+    (void)state;
+    for (int trial = 0; trial < 400; trial++) {
+        mean_part    parts[MOST];
+        const size_t count = 1 + (size_t)(assay_random_next(&random) * MOST);
+        double       high = -INFINITY, low = INFINITY;
+        for (size_t i = 0; i < count; i++) {
+            const bool   maybe = assay_random_next(&random) < 0.3;
+            const double w     = random_in(&random, 0.1, 3.0);
+            parts[i].low       = maybe ? 0.0 : w;
+            parts[i].high      = trial % 5 == 0 ? 1e12 : w + random_in(&random, 0.0, 2.0);
+            parts[i].said[0].v = random_in(&random, -1.0, 2.0);
+            parts[i].said[0].e = random_in(&random, 0.0, 0.1);
+        }
+        for (unsigned choice = 0; choice < 1U << count; choice++) {
+            double top = 0.0, bottom = 0.0, sum = 0.0;
+            for (size_t i = 0; i < count; i++) {
+                const double w = choice >> i & 1U ? parts[i].high : parts[i].low;
+                top += w * (parts[i].said[0].v + parts[i].said[0].e);
+                bottom += w * (parts[i].said[0].v - parts[i].said[0].e);
+                sum += w;
+            }
+            if (sum > 0.0) {
+                high = fmax(high, top / sum);
+                low  = fmin(low, bottom / sum);
+            }
+        }
+        assert_near(mean_highest(parts, count, 0, 1.0), high, 1e-11);
+        assert_near(-mean_highest(parts, count, 0, -1.0), low, 1e-11);
+    }
+}
+
+/* 1, and what is just above half a unit of its last place: every addition rounds up. */
+static void test_worst_mean(void **state)
+{
+    enum { COUNT = 40 };
+    mean_part   parts[COUNT];
+    float       sum   = 0.0f;
+    double      right = 0.0;
+    const float small = 0x1.00001p-24f;
+    (void)state;
+    for (size_t i = 0; i < COUNT; i++) {
+        const float x = i == 0 ? 1.0f : small;
+        parts[i]      = (mean_part){.low = 1.0, .high = 1.0, .said = {{x, 0.0}}};
+        right += (double)x / COUNT;
+        sum = sum + x;
+    }
+    const double error = fabs((double)(sum / (float)COUNT) - right);
+    assert_true(error > 0x1p-25);
+    assert_true(mean_bound(&FLOAT, parts, COUNT, 0, right) >= error);
+}
+
+/* In a hemisphere that is the same to a float everywhere, a float sees no gradient. */
+static void test_flat_hemisphere(void **state)
+{
+    const assay_hemisphere_layout layout = {.theta = 4, .phi = 12, .strata = ASSAY_STRATA_COSINE};
+    const assay_frame3            frame  = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    assay_hemisphere             *h      = NULL;
+    assay_vec3                    rotation[3], translation[3];
+    assert_int_equal(assay_hemisphere_create(*state, &layout, &h), ASSAY_OK);
+    for (size_t i = 0; i < 48; i++) {
+        h->cells[i].radiance = rgb_grey(1.0 + (i % 12 < 6 ? 2e-8 : 0.0));
+        h->cells[i].distance = 1.0;
+    }
+    assay_hemisphere_rotation_gradient(h, rotation);
+    assay_hemisphere_translation_gradient(h, false, translation);
+    const irradiance_bounds b = irradiance_bounds_of(&FLOAT, h, &frame, ASSAY_MEAN_UNIFORM, false);
+    assert_true(fabs(rotation[0].x) > 1e-9 && fabs(translation[0].y) > 1e-9);
+    for (int c = 0; c < 3; c++) {
+        assert_true(b.rotation[3 * c] >= fabs(rotation[c].x));
+        assert_true(b.translation[3 * c + 1] >= fabs(translation[c].y));
+    }
+    assay_hemisphere_destroy(*state, h);
+}
+
+/* Near a pole, near the horizon, or where cos m phi is all but 0: what the rounding turns there is
+ * large beside the function. */
+static assay_vec3 delicate_direction(assay_random *random, int trial)
+{
+    const assay_vec3 d = random_unit(random);
+    if (trial % 3 == 0) {
+        return vec3_normalize(vec3(1e-4 * d.x, 1e-4 * d.y, 1.0));
+    }
+    if (trial % 3 == 1) {
+        return vec3_normalize(vec3(d.x, d.y, 1e-5 * fabs(d.z)));
+    }
+    const int          m   = 1 + trial % 7;
+    const assay_sincos phi = assay_sincos_radians(0.5 * ASSAY_PI / m + 1e-3 * d.x);
+    const double       z = 0.2 + 0.5 * fabs(d.z), sine = sqrt(1.0 - z * z);
+    return vec3(sine * phi.cos, sine * phi.sin, z);
+}
+
+/* Functions at a direction that was rounded, against those at the direction. */
+static void test_rounded_directions(void **state)
+{
+    enum { ORDER = 8, MOST = ORDER * ORDER };
+    assay_random random = assay_random_start(2, ASSAY_STAGE_TEST, 5, 0);
+    for (int kind = 0; kind < ASSAY_BASIS_KIND_COUNT; kind++) {
+        assay_basis *basis = NULL;
+        double       most  = 0.0;
+        if (!basis_bound_known((assay_basis_kind)kind)) {
+            continue;
+        }
+        assert_int_equal(assay_basis_create(*state, (assay_basis_kind)kind, ORDER,
+                                            ASSAY_CONVENTION_THESIS, &basis),
+                         ASSAY_OK);
+        for (int trial = 0; trial < 2000; trial++) {
+            double           right[MOST], values[MOST];
+            tracked          bound[MOST];
+            const assay_vec3 d = delicate_direction(&random, trial);
+            const assay_vec3 r = vec3((float)d.x, (float)d.y, (float)d.z);
+            assert_int_equal(assay_basis_evaluate(basis, d, right), ASSAY_OK);
+            assert_int_equal(assay_basis_evaluate(basis, r, values), ASSAY_OK);
+            basis_bound(&FLOAT, basis, d, right, bound);
+            for (size_t i = 0; i < assay_basis_count(basis); i++) {
+                const double part = fabs(values[i] - right[i]) / bound[i].e;
+                most              = part > most ? part : most;
+            }
+        }
+        print_message("%s: rounding the direction uses %.3f of the bound\n",
+                      assay_basis_kind_name((assay_basis_kind)kind), most);
+        assert_true(most <= 1.0 && most > 0.01);
+        assay_basis_destroy(basis);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_means),
+        cmocka_unit_test(test_worst_mean),
+        cmocka_unit_test_setup_teardown(test_flat_hemisphere, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_rounded_directions, context_set_up, context_tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,698 @@
+/* test_verify.c - images against a reference: each kind of answer, and each thing that forbids one.
+ *
+ * The noise is made here, so what is right is known: independent normal pixels of a given variance,
+ * unless a test says otherwise. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "assay/verify.h"
+#include "core/numerics.h"
+#include "core/random.h"
+#include "support/failing_context.h"
+
+enum { SIDE = 64, PIXELS = SIDE * SIDE };
+
+static failing_memory memory;
+
+static int set_up(void **state)
+{
+    *state = failing_context(&memory);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    assert_int_equal(memory.live, 1);
+    assay_context_destroy(*state);
+    return 0;
+}
+
+static double normal(uint64_t seed, uint64_t pixel)
+{
+    assay_random random = assay_random_start(seed, ASSAY_STAGE_TEST, pixel, 0);
+    const double u = assay_random_next(&random), v = assay_random_next(&random);
+    return sqrt(-2.0 * assay_log1p(-u)) * assay_cos(ASSAY_TWO_PI * v);
+}
+
+static float *add(assay_image *image, const char *name)
+{
+    assay_channel channel;
+    assert_int_equal(assay_image_add_channel(image, name, ASSAY_CHANNEL_FLOAT, &channel), ASSAY_OK);
+    return channel.data.f32;
+}
+
+static float *values(const assay_image *image, const char *name)
+{
+    assay_channel channel;
+    assert_true(assay_image_find_channel(image, name, &channel));
+    return channel.data.f32;
+}
+
+static double light(int i) { return 1.0 + 0.5 * (i % SIDE) / SIDE; }
+
+/* R alone, of `samples` samples whose deviation is `sigma`; the variance is exact.  samples 0: no
+ * count. */
+static assay_image *noisy(assay_context *context, uint64_t seed, double sigma, int samples)
+{
+    assay_image *image = NULL;
+    assert_int_equal(assay_image_create(context, SIDE, SIDE, &image), ASSAY_OK);
+    float       *r = add(image, "R"), *variance = add(image, "Variance.R");
+    const double n = samples ? samples : 100;
+    for (int i = 0; i < PIXELS; i++) {
+        r[i]        = (float)(light(i) + sigma / sqrt(n) * normal(seed, (uint64_t)i));
+        variance[i] = (float)(sigma * sigma / n);
+    }
+    if (samples) {
+        assay_channel count;
+        assert_int_equal(assay_image_add_channel(image, "SampleCount", ASSAY_CHANNEL_UINT, &count),
+                         ASSAY_OK);
+        for (int i = 0; i < PIXELS; i++) {
+            count.data.u32[i] = (uint32_t)samples;
+        }
+    }
+    return image;
+}
+
+static assay_verdict *verify(assay_context *context, const assay_image *candidate,
+                             const assay_image *reference, const assay_verify_options *options)
+{
+    const assay_verify_options usual   = assay_verify_options_default();
+    assay_verdict             *verdict = NULL;
+    assert_int_equal(assay_verdict_create(context, "c", "r", &verdict), ASSAY_OK);
+    assert_int_equal(
+        assay_verify_images(&candidate, 1, reference, options ? options : &usual, verdict),
+        ASSAY_OK);
+    return verdict;
+}
+
+static assay_finding find(const assay_verdict *verdict, const char *test)
+{
+    for (int i = 0; i < assay_verdict_count(verdict); i++) {
+        const assay_finding f = assay_verdict_at(verdict, i);
+        if (strcmp(f.test, test) == 0) {
+            return f;
+        }
+    }
+    fail_msg("no finding of %s", test);
+    return assay_finding_default();
+}
+
+static assay_verdict_kind kind_of(assay_context *context, assay_image *candidate,
+                                  assay_image *reference, const assay_verify_options *options)
+{
+    assay_verdict           *verdict = verify(context, candidate, reference, options);
+    const assay_verdict_kind kind    = assay_verdict_whole(verdict);
+    assay_verdict_destroy(verdict);
+    return kind;
+}
+
+static void same_light_passes(void **state)
+{
+    assay_image   *c = noisy(*state, 1, 0.5, 64), *r = noisy(*state, 2, 0.5, 256);
+    assay_verdict *verdict = verify(*state, c, r, NULL);
+    assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_PASS);
+    /* whole; tiles of 16 (16 of them; of 64 there is one, too few); pixels */
+    assert_int_equal(assay_verdict_count(verdict), 3);
+    assert_int_equal(find(verdict, "whole").values, PIXELS);
+    assert_int_equal(find(verdict, "tile-16").values, 16);
+    assert_int_equal(find(verdict, "welch").values, PIXELS);
+    assert_string_equal(assay_verdict_get(verdict, "candidate_noise"), "its own variance");
+    assay_verdict_destroy(verdict);
+    assay_image_destroy(c);
+    assay_image_destroy(r);
+}
+
+/* Numbers of the whole, by hand: exact variances of 4096 pixels, sd of the mean = sqrt(v / 4096)
+ * with v = 0.25 / 64 + 0.25 / 256; a third of 0.01 for one channel, two-sided 0.00333: quantile
+ * 2.9352; 0.9: 1.2816. */
+static void whole_by_hand(void **state)
+{
+    assay_image *c = noisy(*state, 1, 0.5, 64), *r = noisy(*state, 2, 0.5, 256);
+    float       *x = values(c, "R"), *y = values(r, "R");
+    double       sum = 0.0, mean = 0.0;
+    for (int i = 0; i < PIXELS; i++) {
+        x[i] += 0.02F;
+        sum += (double)x[i] - y[i];
+        mean += y[i];
+    }
+    assay_verdict      *verdict = verify(*state, c, r, NULL);
+    const assay_finding f       = find(verdict, "whole");
+    const double        sd      = sqrt((0.25 / 64 + 0.25 / 256) / PIXELS);
+    assert_int_equal(f.kind, ASSAY_VERDICT_FAIL);
+    /* Rounding: 2^-24 (2 + 4 sqrt(n)) of either mean, which is 1.25. */
+    const double rounding = 0x1p-24 * 1.25 * ((2 + 4 * 8) + (2 + 4 * 16));
+    assert_true(fabs((f.bound - rounding) / (2.9352 * sd) - 1.0) < 1e-4);
+    assert_true(fabs(f.visible / ((2.9352 + 1.2816) * sd) - 1.0) < 0.01);
+    assert_true(fabs(f.effect - sum / mean) < 1e-9);
+    assert_true(fabs(f.in_bounds - sum / PIXELS / (2.9352 * sd)) < 0.01 * f.in_bounds);
+    assert_non_null(f.meaning);
+    /* Pixels do not show it. */
+    assert_int_equal(find(verdict, "welch").kind, ASSAY_VERDICT_PASS);
+    assay_verdict_destroy(verdict);
+    assay_image_destroy(c);
+    assay_image_destroy(r);
+}
+
+static void leak_in_one_tile(void **state)
+{
+    assay_image *c = noisy(*state, 3, 0.5, 64), *r = noisy(*state, 4, 0.5, 256);
+    for (int y = 32; y < 48; y++) {
+        for (int x = 16; x < 32; x++) {
+            values(c, "R")[y * SIDE + x] += 0.03F;
+        }
+    }
+    assay_verdict      *verdict = verify(*state, c, r, NULL);
+    const assay_finding f       = find(verdict, "tile-16");
+    assert_int_equal(f.kind, ASSAY_VERDICT_FAIL);
+    assert_int_equal(f.place.x, 16);
+    assert_int_equal(f.place.y, 32);
+    assert_int_equal(f.place.width, 16);
+    assert_int_equal(find(verdict, "welch").kind, ASSAY_VERDICT_PASS);
+    assay_verdict_destroy(verdict);
+    assay_image_destroy(c);
+    assay_image_destroy(r);
+}
+
+static void one_pixel(void **state)
+{
+    assay_image *c = noisy(*state, 5, 0.5, 64), *r = noisy(*state, 6, 0.5, 256);
+    values(c, "R")[10 * SIDE + 20] -= 0.9F;
+    assay_verdict      *verdict = verify(*state, c, r, NULL);
+    const assay_finding f       = find(verdict, "welch");
+    assert_int_equal(f.kind, ASSAY_VERDICT_FAIL);
+    assert_int_equal(f.place.x, 20);
+    assert_int_equal(f.place.y, 10);
+    assert_true(f.candidate == values(c, "R")[10 * SIDE + 20]);
+    assert_true(f.p < 1e-9 && fabs(assay_log(f.p) - f.log_p) < 1e-9);
+    assert_int_equal(find(verdict, "whole").kind, ASSAY_VERDICT_PASS);
+    assay_verdict_destroy(verdict);
+    assay_image_destroy(c);
+    assay_image_destroy(r);
+}
+
+/* A pixel that few samples outweigh is large, and its variance with it: told, not judged. */
+static void firefly_is_told(void **state)
+{
+    assay_image *c = noisy(*state, 7, 0.5, 64), *r = noisy(*state, 8, 0.5, 256);
+    values(c, "R")[99]          = 1000.0F;
+    values(c, "Variance.R")[99] = 1e6F;
+    values(r, "R")[77]          = 500.0F;
+    values(r, "Variance.R")[77] = 25e4F;
+    assay_verdict *verdict      = verify(*state, c, r, NULL);
+    assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_PASS);
+    assert_int_equal(find(verdict, "fireflies").values, 1);
+    assert_int_equal(find(verdict, "fireflies").place.x, 99 % SIDE);
+    assert_int_equal(find(verdict, "reference-fireflies").place.x, 77 % SIDE);
+    assay_verdict_destroy(verdict);
+    assay_image_destroy(c);
+    assay_image_destroy(r);
+}
+
+/* ---- what cannot be told ---- */
+
+static void detection_that_was_asked(void **state)
+{
+    assay_image         *c = noisy(*state, 9, 0.5, 64), *r = noisy(*state, 10, 0.5, 256);
+    assay_verify_options o = assay_verify_options_default();
+    /* visible: 4.22 sqrt(0.0049 / 4096) / 1.25 = 0.37 percent */
+    o.detect = 0.005;
+    assert_int_equal(kind_of(*state, c, r, &o), ASSAY_VERDICT_PASS);
+    o.detect = 0.002;
+    assert_int_equal(kind_of(*state, c, r, &o), ASSAY_VERDICT_CANNOT_TELL);
+    /* in a tile 4 times as much, and a larger quantile: 5.0 sqrt(0.0049 / 256) / 1.25 = 1.7 */
+    o.detect      = NAN;
+    o.detect_tile = 0.025;
+    assert_int_equal(kind_of(*state, c, r, &o), ASSAY_VERDICT_PASS);
+    o.detect_tile = 0.012;
+    assert_int_equal(kind_of(*state, c, r, &o), ASSAY_VERDICT_CANNOT_TELL);
+    assay_image_destroy(c);
+    assay_image_destroy(r);
+}
+
+static void expect_problem(assay_context *context, const assay_image *c, const assay_image *r,
+                           const char *channels, const char *test, const char *words)
+{
+    assay_verify_options o = assay_verify_options_default();
+    o.channels             = channels;
+    assay_verdict      *v  = verify(context, c, r, &o);
+    const assay_finding f  = find(v, test);
+    assert_int_equal(assay_verdict_whole(v), ASSAY_VERDICT_CANNOT_TELL);
+    assert_int_equal(f.kind, ASSAY_VERDICT_CANNOT_TELL);
+    assert_non_null(strstr(f.meaning, words));
+    assay_verdict_destroy(v);
+}
+
+static void bad_values(void **state)
+{
+    static const float BAD[] = {NAN, INFINITY, -INFINITY};
+    for (int k = 0; k < 3; k++) {
+        assay_image *c = noisy(*state, 9, 0.5, 64), *r = noisy(*state, 10, 0.5, 256);
+        values(c, "R")[5] = BAD[k];
+        expect_problem(*state, c, r, NULL, "finite", "candidate");
+        values(c, "R")[5] = 1.0F;
+        values(r, "R")[6] = BAD[k];
+        expect_problem(*state, c, r, NULL, "finite", "reference");
+        values(r, "R")[6]          = 1.0F;
+        values(c, "Variance.R")[7] = k == 0 ? -1.0F : BAD[k];
+        expect_problem(*state, c, r, NULL, "variance", "candidate");
+        values(c, "Variance.R")[7] = 1.0F;
+        values(r, "Variance.R")[8] = BAD[k];
+        expect_problem(*state, c, r, NULL, "variance", "reference");
+        assay_image_destroy(c);
+        assay_image_destroy(r);
+    }
+}
+
+static void missing_channels(void **state)
+{
+    assay_image *c = noisy(*state, 9, 0.5, 64), *r = noisy(*state, 10, 0.5, 256);
+    expect_problem(*state, c, r, "R,G", "channel", "candidate does not have");
+    add(c, "G");
+    expect_problem(*state, c, r, "R,G", "channel", "reference does not have");
+    assay_image_destroy(c);
+    assay_image_destroy(r);
+}
+
+/* A reference of one sample a pixel, or without variance: not known, whatever its file holds. */
+static void reference_without_variance(void **state)
+{
+    assay_image  *c = noisy(*state, 9, 0.5, 64), *r = noisy(*state, 10, 0.5, 256);
+    assay_channel count;
+    assert_true(assay_image_find_channel(r, "SampleCount", &count));
+    count.data.u32[100] = 1;
+    expect_problem(*state, c, r, NULL, "variance", "two samples");
+    assay_verify_options o = assay_verify_options_default();
+    o.reference_exact      = true;
+    assay_image *better    = noisy(*state, 9, 0.5, 65536);
+    assert_int_equal(kind_of(*state, c, better, &o), ASSAY_VERDICT_PASS);
+    /* ... and is said to have none: what is better is taken for wrong. */
+    assert_int_equal(kind_of(*state, better, r, &o), ASSAY_VERDICT_FAIL);
+    assay_image_destroy(better);
+    assay_image_destroy(c);
+    assay_image_destroy(r);
+}
+
+static void refused(void **state)
+{
+    const assay_image   *c = noisy(*state, 9, 0.5, 64);
+    assay_image         *r = noisy(*state, 10, 0.5, 256), *small = NULL;
+    assay_verify_options o = assay_verify_options_default();
+    assay_verdict       *v = NULL;
+    assert_int_equal(assay_verdict_create(*state, "c", "r", &v), ASSAY_OK);
+    assert_int_equal(assay_image_create(*state, SIDE, SIDE - 1, &small), ASSAY_OK);
+    assert_int_equal(assay_verify_images(&c, 1, small, &o, v), ASSAY_ERR_ARGUMENT);
+    assert_non_null(strstr(assay_context_error(*state), "64 x 64"));
+    assay_image_destroy(small);
+    assert_int_equal(assay_image_create(*state, SIDE, SIDE, &small), ASSAY_OK);
+    assert_int_equal(assay_verify_images(&c, 1, small, &o, v), ASSAY_ERR_ARGUMENT);
+    assert_non_null(strstr(assay_context_error(*state), "no channel"));
+    const struct {
+        double level, allow, detect;
+        int    tile, count;
+    } BAD[] = {{0.0, NAN, NAN, 16, 1},  {0.5, NAN, NAN, 16, 1},  {NAN, NAN, NAN, 16, 1},
+               {0.01, 0.0, NAN, 16, 1}, {0.01, NAN, -1, 16, 1},  {0.01, NAN, NAN, 3, 1},
+               {0.01, NAN, NAN, 16, 0}, {0.01, NAN, NAN, 16, 65}};
+    for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
+        o        = assay_verify_options_default();
+        o.level  = BAD[i].level;
+        o.allow  = BAD[i].allow;
+        o.detect = BAD[i].detect;
+        o.tile   = BAD[i].tile;
+        assert_int_equal(assay_verify_images(&c, BAD[i].count, r, &o, v), ASSAY_ERR_ARGUMENT);
+    }
+    o                                = assay_verify_options_default();
+    static const char *const LISTS[] = {"", "R,", ",R", "R,R"};
+    for (int i = 0; i < 4; i++) {
+        o.channels = LISTS[i];
+        assert_int_equal(assay_verify_images(&c, 1, r, &o, v), ASSAY_ERR_ARGUMENT);
+    }
+    assert_int_equal(assay_verdict_count(v), 0);
+    assay_verdict_destroy(v);
+    assay_image_destroy((assay_image *)c);
+    assay_image_destroy(small);
+    assay_image_destroy(r);
+}
+
+static void metadata(void **state)
+{
+    static const char *const   PAIRS[][3] = {{"assay:scene.digest", "a", "b"},
+                                             {"assay:camera.position", "0 0 1", "0 0 2"},
+                                             {"assay:scene.time", "0", "1"},
+                                             {"assay:scene.background", "0 0 0", "1 1 1"},
+                                             {"assay:scene.force_diffuse", "on", "off"}};
+    const assay_verify_options o          = assay_verify_options_default();
+    for (size_t i = 0; i < sizeof PAIRS / sizeof PAIRS[0]; i++) {
+        assay_image       *r = noisy(*state, 10, 0.5, 256), *made = noisy(*state, 9, 0.5, 64);
+        const assay_image *c = made;
+        assay_verdict     *v = NULL;
+        assert_int_equal(assay_verdict_create(*state, "c", "r", &v), ASSAY_OK);
+        assay_image_set_attribute(made, PAIRS[i][0], PAIRS[i][1]);
+        assert_int_equal(assay_verify_images(&c, 1, r, &o, v), ASSAY_OK);
+        assay_image_set_attribute(r, PAIRS[i][0], PAIRS[i][2]);
+        assert_int_equal(assay_verify_images(&c, 1, r, &o, v), ASSAY_ERR_ARGUMENT);
+        assert_non_null(strstr(assay_context_error(*state), PAIRS[i][0]));
+        assay_verify_options ignore = o;
+        ignore.ignore_metadata      = true;
+        assert_int_equal(assay_verify_images(&c, 1, r, &ignore, v), ASSAY_OK);
+        assay_verdict_destroy(v);
+        assay_image_destroy(made);
+        assay_image_destroy(r);
+    }
+}
+
+/* Bounces stand under each method's own name; a picture of records is no light; colours that are
+ * said to be encoded are no light either. */
+static void metadata_of_methods(void **state)
+{
+    const assay_verify_options o = assay_verify_options_default();
+    assay_image               *r = noisy(*state, 10, 0.5, 256), *made = noisy(*state, 9, 0.5, 64);
+    const assay_image         *c = made;
+    assay_verdict             *v = NULL;
+    assert_int_equal(assay_verdict_create(*state, "c", "r", &v), ASSAY_OK);
+    assay_image_set_attribute(made, "assay:method", "splat");
+    assay_image_set_attribute(made, "assay:splat.bounces", "3");
+    assay_image_set_attribute(made, "assay:splat.debug", "off");
+    assay_image_set_attribute(made, "oiio:ColorSpace", "lin_rec709");
+    assay_image_set_attribute(r, "assay:method", "path");
+    assay_image_set_attribute(r, "assay:path.bounces", "3");
+    assert_int_equal(assay_verify_images(&c, 1, r, &o, v), ASSAY_OK);
+    assay_image_set_attribute(r, "assay:path.bounces", "4");
+    assert_int_equal(assay_verify_images(&c, 1, r, &o, v), ASSAY_ERR_ARGUMENT);
+    assert_non_null(strstr(assay_context_error(*state), "bounces"));
+    assay_image_set_attribute(r, "assay:path.bounces", "3");
+    assay_image_set_attribute(made, "assay:splat.debug", "weights");
+    assert_int_equal(assay_verify_images(&c, 1, r, &o, v), ASSAY_ERR_ARGUMENT);
+    assay_image_set_attribute(made, "assay:splat.debug", "off");
+    assay_image_set_attribute(made, "oiio:ColorSpace", "sRGB");
+    assert_int_equal(assay_verify_images(&c, 1, r, &o, v), ASSAY_ERR_ARGUMENT);
+    assert_non_null(strstr(assay_context_error(*state), "sRGB"));
+    assay_verdict_destroy(v);
+    assay_image_destroy(made);
+    assay_image_destroy(r);
+}
+
+/* ---- a candidate alone ---- */
+
+static assay_image *alone(assay_context *context, uint64_t seed, double sigma)
+{
+    assay_image *image = NULL, *from = noisy(context, seed, sigma, 100);
+    assert_int_equal(assay_image_create(context, SIDE, SIDE, &image), ASSAY_OK);
+    memcpy(add(image, "R"), values(from, "R"), sizeof(float) * PIXELS);
+    assay_image_destroy(from);
+    return image;
+}
+
+static void alone_without_variance(void **state)
+{
+    assay_image *c = alone(*state, 11, 0.5), *r = noisy(*state, 12, 0.5, 256);
+    assert_int_equal(kind_of(*state, c, r, NULL), ASSAY_VERDICT_PASS);
+    for (int i = 0; i < PIXELS; i++) {
+        values(c, "R")[i] *= 1.02F;
+    }
+    assay_verdict *verdict = verify(*state, c, r, NULL);
+    assert_int_equal(find(verdict, "whole").kind, ASSAY_VERDICT_FAIL);
+    assert_string_equal(assay_verdict_get(verdict, "candidate_noise"),
+                        "differences to the reference");
+    assay_verdict_destroy(verdict);
+    /* A single pixel far off may be a firefly: who would know? */
+    assay_image *d    = alone(*state, 13, 0.5);
+    values(d, "R")[7] = 3.0F;
+    verdict           = verify(*state, d, r, NULL);
+    assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_CANNOT_TELL);
+    assert_int_equal(find(verdict, "outlier").place.x, 7);
+    assay_verdict_destroy(verdict);
+    assay_image_destroy(c);
+    assay_image_destroy(d);
+    assay_image_destroy(r);
+}
+
+/* ---- rounding ---- */
+
+/* The same constant, in pixels without noise, but for the last bits: no difference.  One more bit
+ * of a thousand is one. */
+static void rounding_is_no_difference(void **state)
+{
+    assay_image *c = noisy(*state, 1, 0.0, 64), *r = noisy(*state, 2, 0.0, 256);
+    for (int i = 0; i < PIXELS; i++) {
+        values(c, "R")[i] *= 1.0F + 0x1p-23F;
+    }
+    assert_int_equal(kind_of(*state, c, r, NULL), ASSAY_VERDICT_PASS);
+    for (int i = 0; i < PIXELS; i++) {
+        values(c, "R")[i] *= 1.0F + 0x1p-13F;
+    }
+    assay_verdict *verdict = verify(*state, c, r, NULL);
+    assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_FAIL);
+    assert_true(isinf(find(verdict, "whole").in_bounds) && find(verdict, "whole").p == 0.0);
+    assay_verdict_destroy(verdict);
+    assay_verify_options o = assay_verify_options_default();
+    o.precision            = ASSAY_PRECISION_HALF;
+    assert_int_equal(kind_of(*state, c, r, &o), ASSAY_VERDICT_PASS);
+    assay_image_destroy(c);
+    assay_image_destroy(r);
+}
+
+/* ---- runs ---- */
+
+/* Noise of blocks of 8 x 8 pixels, as a cache has: with pixels taken as independent every tile
+ * would fail. */
+static assay_image *blotchy(assay_context *context, uint64_t seed, double bias)
+{
+    assay_image *image = NULL;
+    assert_int_equal(assay_image_create(context, SIDE, SIDE, &image), ASSAY_OK);
+    float *r = add(image, "R");
+    for (int i = 0; i < PIXELS; i++) {
+        const int block = (i / SIDE / 8) * 8 + i % SIDE / 8;
+        r[i]            = (float)(light(i) + bias + 0.05 * normal(seed, (uint64_t)block));
+    }
+    return image;
+}
+
+static assay_verdict_kind kind_of_runs(assay_context *context, double bias, const assay_image *r,
+                                       uint64_t seed, assay_verdict **verdict_out)
+{
+    const assay_image         *runs[4];
+    const assay_verify_options o       = assay_verify_options_default();
+    assay_verdict             *verdict = NULL;
+    for (int k = 0; k < 4; k++) {
+        runs[k] = blotchy(context, seed + (uint64_t)k, bias);
+    }
+    assert_int_equal(assay_verdict_create(context, "c", "r", &verdict), ASSAY_OK);
+    assert_int_equal(assay_verify_images(runs, 4, r, &o, verdict), ASSAY_OK);
+    const assay_verdict_kind kind = assay_verdict_whole(verdict);
+    for (int k = 0; k < 4; k++) {
+        assay_image_destroy((assay_image *)runs[k]);
+    }
+    *verdict_out = verdict;
+    return kind;
+}
+
+static void runs_show_noise_that_hangs_together(void **state)
+{
+    assay_image   *r       = noisy(*state, 14, 0.5, 4096);
+    assay_verdict *verdict = NULL;
+    for (uint64_t seed = 100; seed < 150; seed += 10) {
+        assert_int_equal(kind_of_runs(*state, 0.0, r, seed, &verdict), ASSAY_VERDICT_PASS);
+        assay_verdict_destroy(verdict);
+    }
+    assert_int_equal(kind_of_runs(*state, 0.1, r, 200, &verdict), ASSAY_VERDICT_FAIL);
+    assert_string_equal(assay_verdict_get(verdict, "candidate_noise"), "differences of its runs");
+    /* sd of the mean of 4 runs of 64 blocks: 0.05 / 16, with the reference's 0.5 / 64 / 64; the
+     * quantile at 3 degrees of freedom is 8.9 */
+    const assay_finding f  = find(verdict, "whole");
+    const double        sd = sqrt(0.05 * 0.05 / 256 + 0.25 / 4096 / PIXELS);
+    assert_true(f.bound > 7.0 * sd && f.bound < 20.0 * sd);
+    assay_verdict_destroy(verdict);
+    assay_image_destroy(r);
+}
+
+/* ---- equivalence ---- */
+
+static void equivalence(void **state)
+{
+    assay_image         *r = noisy(*state, 15, 0.5, 4096), *c = noisy(*state, 16, 0.5, 4096);
+    assay_verify_options o = assay_verify_options_default();
+    for (int i = 0; i < PIXELS; i++) {
+        values(c, "R")[i] *= 1.03F;
+    }
+    assert_int_equal(kind_of(*state, c, r, NULL), ASSAY_VERDICT_FAIL);
+    /* sd of a tile's mean: 0.5 / 64 / 16 sqrt(2) = 0.00069, 0.06 percent */
+    o.allow = 0.04;
+    assert_int_equal(kind_of(*state, c, r, &o), ASSAY_VERDICT_PASS);
+    o.allow = 0.0302;
+    assert_int_equal(kind_of(*state, c, r, &o), ASSAY_VERDICT_CANNOT_TELL);
+    o.allow = 0.02;
+    assert_int_equal(kind_of(*state, c, r, &o), ASSAY_VERDICT_FAIL);
+    /* 3 percent of 1 to 1.5 is 0.03 to 0.045 */
+    o.allow          = NAN;
+    o.allow_absolute = 0.05;
+    assert_int_equal(kind_of(*state, c, r, &o), ASSAY_VERDICT_PASS);
+    o.allow_absolute = 0.035;
+    assert_int_equal(kind_of(*state, c, r, &o), ASSAY_VERDICT_FAIL);
+    /* Both together are added. */
+    o.allow = 0.01;
+    assert_int_equal(kind_of(*state, c, r, &o), ASSAY_VERDICT_PASS);
+    assay_image_destroy(c);
+    assay_image_destroy(r);
+}
+
+/* One tile beyond the allowance fails, whatever the whole has. */
+static void equivalence_of_each_tile(void **state)
+{
+    assay_image         *r = noisy(*state, 15, 0.5, 4096), *c = noisy(*state, 16, 0.5, 4096);
+    assay_verify_options o = assay_verify_options_default();
+    o.allow                = 0.02;
+    for (int y = 0; y < 16; y++) {
+        for (int x = 48; x < 64; x++) {
+            values(c, "R")[y * SIDE + x] *= 0.95F;
+        }
+    }
+    assay_verdict *verdict = verify(*state, c, r, &o);
+    assert_int_equal(find(verdict, "tost-whole").kind, ASSAY_VERDICT_PASS);
+    assert_int_equal(find(verdict, "tost-16").kind, ASSAY_VERDICT_FAIL);
+    assert_int_equal(find(verdict, "tost-16").place.x, 48);
+    assert_true(find(verdict, "tost-16").p < 1e-4);
+    assay_verdict_destroy(verdict);
+    assay_image_destroy(c);
+    assay_image_destroy(r);
+}
+
+/* ---- the order of stages, and the same bits ---- */
+
+static void stages_in_the_lights_order(void **state)
+{
+    static const char *const NAMES[] = {"R", "Direct.G", "Irradiance.B", "IrradianceDirect.B"};
+    assay_image             *images[2];
+    for (int k = 0; k < 2; k++) {
+        assay_image *from = noisy(*state, 20 + (uint64_t)k, 0.5, 64);
+        assert_int_equal(assay_image_create(*state, SIDE, SIDE, &images[k]), ASSAY_OK);
+        for (int i = 0; i < 4; i++) {
+            char variance[40];
+            snprintf(variance, sizeof variance, "Variance.%s", NAMES[i]);
+            memcpy(add(images[k], NAMES[i]), values(from, "R"), sizeof(float) * PIXELS);
+            memcpy(add(images[k], variance), values(from, "Variance.R"), sizeof(float) * PIXELS);
+            for (int p = 0; k == 1 && p < PIXELS; p++) {
+                values(images[k], NAMES[i])[p] *= i < 3 ? 2.0F : 1.0F;
+            }
+        }
+        assay_image_destroy(from);
+    }
+    assay_verdict      *verdict = verify(*state, images[0], images[1], NULL);
+    const assay_finding first   = assay_verdict_at(verdict, assay_verdict_first(verdict));
+    assert_string_equal(assay_verdict_at(verdict, 0).array, "IrradianceDirect.B");
+    assert_string_equal(first.array, "Irradiance.B");
+    assert_string_equal(first.stage, "irradiance");
+    assay_verdict_destroy(verdict);
+    assay_image_destroy(images[0]);
+    assay_image_destroy(images[1]);
+}
+
+static char *json_with_threads(int threads)
+{
+    const assay_context_options options = {.threads = threads};
+    assay_context              *context = NULL;
+    assert_int_equal(assay_context_create(&options, &context), ASSAY_OK);
+    assay_image *c = noisy(context, 30, 0.5, 64), *r = noisy(context, 31, 0.5, 64);
+    for (int i = 0; i < PIXELS; i++) {
+        values(c, "R")[i] += i % 7 == 0 ? 0.3F : 0.0F;
+    }
+    assay_verdict *verdict = verify(context, c, r, NULL);
+    char          *text = NULL, *copy = NULL;
+    assert_int_equal(assay_verdict_json(verdict, &text), ASSAY_OK);
+    copy = strdup(text);
+    assay_text_destroy(context, text);
+    assay_verdict_destroy(verdict);
+    assay_image_destroy(c);
+    assay_image_destroy(r);
+    assay_context_destroy(context);
+    return copy;
+}
+
+static void same_for_any_threads(void **state)
+{
+    char *one = json_with_threads(1), *five = json_with_threads(5);
+    assert_string_equal(one, five);
+    free(one);
+    free(five);
+    (void)state;
+}
+
+/* Holm names fewer pixels than Benjamini and Hochberg, of the same images. */
+static void corrections(void **state)
+{
+    assay_image *c = noisy(*state, 40, 0.5, 64), *r = noisy(*state, 41, 0.5, 256);
+    for (int i = 0; i < PIXELS; i += 5) {
+        values(c, "R")[i] += i % 2 ? 0.3F : -0.3F;
+    }
+    assay_verify_options o = assay_verify_options_default();
+    o.correction           = ASSAY_CORRECTION_BH;
+    assay_verdict *holm = verify(*state, c, r, NULL), *bh = verify(*state, c, r, &o);
+    assert_true(find(bh, "welch").bound < 0.95 * find(holm, "welch").bound);
+    assert_string_equal(assay_verdict_get(bh, "correction"), "bh");
+    assay_verdict_destroy(holm);
+    assay_verdict_destroy(bh);
+    assay_image_destroy(c);
+    assay_image_destroy(r);
+}
+
+/* ---- memory ---- */
+
+static assay_status compare_runs(assay_context *context, void *user)
+{
+    const assay_image *const  *images = user;
+    const assay_verify_options o      = assay_verify_options_default();
+    assay_verdict             *v      = NULL;
+    assay_status               status = assay_verdict_create(context, "c", "r", &v);
+    if (status == ASSAY_OK) {
+        status = assay_verify_images(images, 2, images[2], &o, v);
+        assert_true(status == ASSAY_OK || assay_verdict_count(v) == 0);
+    }
+    assay_verdict_destroy(v);
+    return status;
+}
+
+static void every_refused_block(void **state)
+{
+    const assay_image *images[3] = {noisy(*state, 50, 0.5, 64), noisy(*state, 51, 0.5, 64),
+                                    noisy(*state, 52, 0.5, 256)};
+    assert_true(failing_each(compare_runs, images) > 20);
+    for (int k = 0; k < 3; k++) {
+        assay_image_destroy((assay_image *)images[k]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(same_light_passes, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(whole_by_hand, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(leak_in_one_tile, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(one_pixel, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(firefly_is_told, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(detection_that_was_asked, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bad_values, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(missing_channels, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(reference_without_variance, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(metadata, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(metadata_of_methods, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(alone_without_variance, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(rounding_is_no_difference, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(runs_show_noise_that_hangs_together, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(equivalence, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(equivalence_of_each_tile, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(stages_in_the_lights_order, set_up, tear_down),
+        cmocka_unit_test(same_for_any_threads),
+        cmocka_unit_test_setup_teardown(corrections, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(every_refused_block, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

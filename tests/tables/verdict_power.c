@@ -1,0 +1,228 @@
+/* verdict_power.c - the tables of docs/verdicts.md: how often `assay verify` says FAIL of images
+ * that are the same light, and of images with a defect that was planted.
+ *
+ *     verdict_power [NULLS [PLANTED]]     comparisons in all (10000), and of each defect (1000)
+ *
+ * Images are drawn from pools of samples (tests/support/noise_pool.h): of our Cornell box, once as
+ * path traces it by default and once with light found by scattered rays alone, which is full of
+ * fireflies, and made-up ones. */
+#include <math.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "assay/verify.h"
+#include "core/parallel.h"
+#include "support/noise_pool.h"
+
+enum { SIDE = 48, TILE = 8 };
+#define LEVEL 0.01
+
+/* How the candidate's noise is known. */
+typedef enum { OWN, RUNS, ALONE, ALLOWED } way;
+static const char *const WAYS[] = {"own variance", "4 runs", "alone", "allow 0.05"};
+
+typedef struct {
+    const noise_pool *candidate, *reference;
+    int               samples, reference_samples;
+    way               how;
+    noise_defect      defect;
+    uint64_t          first; /* number of the first image */
+    atomic_int        failed, passed;
+} experiment;
+
+static void require(bool ok, const char *what)
+{
+    if (!ok) {
+        fprintf(stderr, "verdict_power: %s\n", what);
+        exit(1);
+    }
+}
+
+static void drop_variance(assay_image *image)
+{
+    static const char *const NAMES[] = {"Variance.R", "Variance.G", "Variance.B"};
+    for (int c = 0; c < 3; c++) {
+        assay_channel channel;
+        require(assay_image_find_channel(image, NAMES[c], &channel), "a variance");
+        memset(channel.data.f32, 0, sizeof(float) * SIDE * SIDE);
+    }
+    assay_channel count;
+    require(assay_image_find_channel(image, "SampleCount", &count), "a count");
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        count.data.u32[i] = 1;
+    }
+}
+
+static assay_status compare(void *user, uint64_t index, int worker)
+{
+    experiment                 *e       = user;
+    const assay_context_options options = {.threads = 1};
+    const int                   runs    = e->how == RUNS ? 4 : 1;
+    assay_context              *context = NULL;
+    assay_image                *candidates[4], *reference;
+    assay_verdict              *verdict = NULL;
+    require(assay_context_create(&options, &context) == ASSAY_OK, "a context");
+    const uint64_t number = e->first + index * 8;
+    for (int k = 0; k < runs; k++) {
+        candidates[k] =
+            noise_pool_draw(context, e->candidate, e->samples, number + (uint64_t)k, e->defect);
+        if (e->how == ALONE || e->how == ALLOWED) {
+            drop_variance(candidates[k]);
+        }
+    }
+    reference =
+        noise_pool_draw(context, e->reference, e->reference_samples, number + 7, DEFECT_NONE);
+    assay_verify_options how = assay_verify_options_default();
+    how.tile                 = TILE;
+    how.level                = LEVEL;
+    how.allow                = e->how == ALLOWED ? 0.05 : NAN;
+    require(assay_verdict_create(context, "candidate", "reference", &verdict) == ASSAY_OK &&
+                assay_verify_images((const assay_image *const *)candidates, runs, reference, &how,
+                                    verdict) == ASSAY_OK,
+            assay_context_error(context));
+    const assay_verdict_kind kind = assay_verdict_whole(verdict);
+    atomic_fetch_add(&e->failed, kind == ASSAY_VERDICT_FAIL);
+    atomic_fetch_add(&e->passed, kind == ASSAY_VERDICT_PASS);
+    assay_verdict_destroy(verdict);
+    for (int k = 0; k < runs; k++) {
+        assay_image_destroy(candidates[k]);
+    }
+    assay_image_destroy(reference);
+    assay_context_destroy(context);
+    (void)worker;
+    return ASSAY_OK;
+}
+
+static bool show(void *user, const char *phase, double fraction)
+{
+    if (isatty(STDERR_FILENO) && phase) {
+        fprintf(stderr, "\r%s %3.0f %% ", (const char *)user, 100.0 * fraction);
+    }
+    return true;
+}
+
+static void run(assay_context *context, experiment *e, uint64_t count)
+{
+    require(assay_parallel_for(context, "compare", count, compare, e) == ASSAY_OK, "a comparison");
+    if (isatty(STDERR_FILENO)) {
+        fprintf(stderr, "\r\033[K");
+    }
+}
+
+/* ---- the two tables ---- */
+
+typedef struct {
+    noise_pool *mis, *bsdf, *mis_many, *bounces_many, *made[NOISE_KINDS];
+} pools;
+
+static void tell_nulls(assay_context *context, const pools *p, uint64_t total)
+{
+    const struct {
+        const char       *name;
+        const noise_pool *candidate, *reference;
+        int               samples, reference_samples;
+        way               how;
+    } rows[] = {
+        {"Cornell box", p->mis, p->mis, 16, 256, OWN},
+        {"Cornell box", p->mis, p->mis, 64, 64, OWN},
+        {"Cornell box", p->mis, p->mis, 4, 256, OWN},
+        {"Cornell box", p->mis, p->mis, 256, 16, OWN},
+        {"Cornell box, many samples", p->mis_many, p->mis_many, 64, 256, OWN},
+        {"the same, fireflies", p->bsdf, p->bsdf, 16, 256, OWN},
+        {"normal", p->made[NOISE_GAUSS], p->made[NOISE_GAUSS], 3, 3, OWN},
+        {"log-normal", p->made[NOISE_LOGNORMAL], p->made[NOISE_LOGNORMAL], 16, 256, OWN},
+        {"rare and bright", p->made[NOISE_RARE], p->made[NOISE_RARE], 16, 256, OWN},
+        {"Cornell box", p->mis, p->mis, 16, 256, RUNS},
+        {"rare and bright", p->made[NOISE_RARE], p->made[NOISE_RARE], 16, 256, RUNS},
+        {"Cornell box", p->mis, p->mis, 16, 256, ALONE},
+        {"rare and bright", p->made[NOISE_RARE], p->made[NOISE_RARE], 16, 256, ALONE},
+    };
+    enum { ROWS = sizeof rows / sizeof rows[0] };
+    const uint64_t each = (total + ROWS - 1) / ROWS;
+    uint64_t       all  = 0;
+    printf("| noise | samples | of the reference | candidate's noise | comparisons | FAIL |\n"
+           "|---|---|---|---|---|---|\n");
+    for (int i = 0; i < ROWS; i++) {
+        experiment e = {.candidate         = rows[i].candidate,
+                        .reference         = rows[i].reference,
+                        .samples           = rows[i].samples,
+                        .reference_samples = rows[i].reference_samples,
+                        .how               = rows[i].how,
+                        .first             = (uint64_t)(i + 1) << 32};
+        run(context, &e, each);
+        printf("| %s | %d | %d | %s | %llu | %d |\n", rows[i].name, e.samples, e.reference_samples,
+               WAYS[e.how], (unsigned long long)each, (int)e.failed);
+        fflush(stdout);
+        all += (uint64_t)e.failed;
+    }
+    printf("| all | | | | %llu | %llu |\n\n", (unsigned long long)(each * ROWS),
+           (unsigned long long)all);
+}
+
+static void tell_planted(assay_context *context, const pools *p, uint64_t count)
+{
+    static const struct {
+        int samples, reference_samples;
+        way how;
+    } COLUMN[] = {{16, 64, OWN}, {64, 128, OWN}, {16, 128, RUNS}, {64, 128, ALONE}};
+    enum { COLUMNS = sizeof COLUMN / sizeof COLUMN[0] };
+    printf("| defect |");
+    for (int c = 0; c < COLUMNS; c++) {
+        printf(" %d of %d, %s |", 16 * COLUMN[c].samples, 16 * COLUMN[c].reference_samples,
+               WAYS[COLUMN[c].how]);
+    }
+    printf("\n|---|---|---|---|---|\n");
+    for (int d = 1; d < DEFECT_COUNT; d++) {
+        printf("| %s |", noise_defect_names[d]);
+        for (int c = 0; c < COLUMNS; c++) {
+            experiment e = {.candidate         = d == DEFECT_BOUNCE ? p->bounces_many : p->mis_many,
+                            .reference         = p->mis_many,
+                            .samples           = COLUMN[c].samples,
+                            .reference_samples = COLUMN[c].reference_samples,
+                            .how               = COLUMN[c].how,
+                            .defect            = (noise_defect)d,
+                            .first             = (uint64_t)(1000 + d * 10 + c) << 32};
+            run(context, &e, count);
+            printf(" %.1f |", 100.0 * e.failed / (double)count);
+            fflush(stdout);
+        }
+        printf("\n");
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const uint64_t              nulls   = argc > 1 ? strtoull(argv[1], NULL, 10) : 10000;
+    const uint64_t              planted = argc > 2 ? strtoull(argv[2], NULL, 10) : 1000;
+    const assay_context_options options = {.progress = show, .user = "verdict_power"};
+    assay_context              *context = NULL;
+    assay_scene                *scene   = NULL;
+    require(assay_context_create(&options, &context) == ASSAY_OK, "a context");
+    require(assay_scene_load(context, "scenes/cornell-box/cornell-box.gltf", NULL, &scene) ==
+                ASSAY_OK,
+            assay_context_error(context));
+    pools       p   = {.mis  = noise_pool_render(context, scene, SIDE, NULL, NULL),
+                       .bsdf = noise_pool_render(context, scene, SIDE, "estimator", "bsdf")};
+    noise_pool *few = noise_pool_render(context, scene, SIDE, "bounces", "5");
+    p.mis_many      = noise_pool_batches(p.mis, 16);
+    p.bounces_many  = noise_pool_batches(few, 16);
+    for (int k = 0; k < NOISE_KINDS; k++) {
+        p.made[k] = noise_pool_made_up((noise_kind)k, SIDE);
+    }
+    tell_nulls(context, &p, nulls);
+    tell_planted(context, &p, planted);
+    for (int k = 0; k < NOISE_KINDS; k++) {
+        noise_pool_free(p.made[k]);
+    }
+    noise_pool_free(p.mis);
+    noise_pool_free(p.bsdf);
+    noise_pool_free(few);
+    noise_pool_free(p.mis_many);
+    noise_pool_free(p.bounces_many);
+    assay_scene_destroy(scene);
+    assay_context_destroy(context);
+    return 0;
+}
