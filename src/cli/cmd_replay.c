@@ -33,8 +33,7 @@ enum {
     OPT_INPUTS,
     OPT_THREADS,
     OPT_MEMORY,
-    OPT_HELP,
-    OPT_SCENE_OPTIONS
+    OPT_HELP
 };
 static const cli_option OPTIONS[] = {
     {"in", 'i', "BUNDLE", "the folder with the inputs"},
@@ -83,7 +82,7 @@ static const char *take(void *user, int index, const char *value)
     case OPT_HELP: r->help = true; return NULL;
     default: break;
     }
-    if (index >= OPT_SCENE_OPTIONS) {
+    if (index >= 0) {
         cli_scene_option(&r->request, OPTIONS[index].name, value, &problem);
         return problem;
     }

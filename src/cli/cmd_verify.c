@@ -44,8 +44,7 @@ enum {
     OPT_QUIET,
     OPT_HELP,
     OPT_SCENE,
-    OPT_TIME,
-    OPT_SCENE_OPTIONS
+    OPT_TIME
 };
 static const cli_option OPTIONS[] = {
     {"reference", 0, "REF",
@@ -159,7 +158,7 @@ static const char *take_output(verify_request *r, int index, const char *value)
     case OPT_TIME: return cli_read_real(value, &r->bundles.time);
     default: break;
     }
-    if (index >= OPT_SCENE_OPTIONS) {
+    if (index >= 0) {
         const char *problem = NULL;
         cli_scene_option(&r->bundles.options, OPTIONS[index].name, value, &problem);
         return problem;
@@ -264,6 +263,9 @@ static assay_status report(cli_console *console, assay_context *context, const v
     }
     if (text) {
         status = write_output(console, context, verdict, assay_verdict_paragraph, "-");
+    }
+    if (status == ASSAY_OK && text && assay_verdict_get(verdict, "not judged")) {
+        printf("Not judged: %s.\n", assay_verdict_get(verdict, "not judged"));
     }
     if (status == ASSAY_OK && r->annotations) {
         status = write_output(console, context, verdict, assay_verdict_annotations, "-");

@@ -175,7 +175,8 @@ static assay_status describe(const assay_bundle_reader *reader, const cJSON *jso
                                 .dtype  = text_of(json, "dtype"),
                                 .digest = text_of(json, "sha256")};
     if (!is_plain(entry.name)) {
-        return fail_format(reader, "manifest.json lists an array without a name of a file");
+        fail_format(reader, "manifest.json lists an array without a name of a file");
+        return ASSAY_ERR_FORMAT;
     }
     const size_t length = strlen(entry.name);
     const bool   named  = entry.file && strncmp(entry.file, entry.name, length) == 0;
@@ -188,9 +189,9 @@ static assay_status describe(const assay_bundle_reader *reader, const cJSON *jso
                               ? "its 'shape' is not one to three sizes"
                               : NULL;
     if (what) {
-        return assay_fail(reader->context, ASSAY_ERR_FORMAT,
-                          "%s: bundle: manifest.json, array '%s': %s", reader->folder, entry.name,
-                          what);
+        assay_fail(reader->context, ASSAY_ERR_FORMAT, "%s: bundle: manifest.json, array '%s': %s",
+                   reader->folder, entry.name, what);
+        return ASSAY_ERR_FORMAT;
     }
     *entry_out = entry;
     return ASSAY_OK;
@@ -207,9 +208,12 @@ assay_status assay_bundle_entry_of(const assay_bundle_reader *reader, const char
                                    assay_bundle_entry *entry_out)
 {
     const cJSON *entry = find_entry(reader, name);
-    return entry ? describe(reader, entry, entry_out)
-                 : assay_fail(reader->context, ASSAY_ERR_FORMAT,
-                              "%s: bundle: the manifest lists no array '%s'", reader->folder, name);
+    if (!entry) {
+        assay_fail(reader->context, ASSAY_ERR_FORMAT,
+                   "%s: bundle: the manifest lists no array '%s'", reader->folder, name);
+        return ASSAY_ERR_FORMAT;
+    }
+    return describe(reader, entry, entry_out);
 }
 
 /* ---- arrays ---- */
@@ -410,7 +414,7 @@ static assay_status read_listed_image(const assay_bundle_reader *reader,
 assay_status assay_bundle_read_array(const assay_bundle_reader *reader, const char *name,
                                      const char *channels, assay_array **table_out)
 {
-    assay_bundle_entry entry;
+    assay_bundle_entry entry  = {.name = NULL};
     const assay_status status = assay_bundle_entry_of(reader, name, &entry);
     if (status != ASSAY_OK) {
         return status;

@@ -125,7 +125,7 @@ static assay_status match_entry(assay_context *context, const assay_bundle_reade
                                 const assay_bundle_reader *reference,
                                 const assay_bundle_entry  *entry)
 {
-    assay_bundle_entry like;
+    assay_bundle_entry like = {.name = NULL};
     if (!is_type(entry)) {
         return fail_array(
             context, candidate, entry,
@@ -175,7 +175,7 @@ static oddities count_odd(const assay_array *table)
 static assay_status count_like(const assay_bundle_reader *reference, const char *name,
                                oddities *odd_out)
 {
-    assay_bundle_entry like;
+    assay_bundle_entry like   = {.name = NULL};
     assay_array       *table  = NULL;
     assay_status       status = find_like(reference, name, &like)
                                     ? assay_bundle_read_array(reference, like.name, NULL, &table)
@@ -218,7 +218,7 @@ static assay_status check_unique(assay_context *context, const assay_bundle_read
                                  int index, const assay_bundle_entry *entry)
 {
     for (int i = 0; i < index; i++) {
-        assay_bundle_entry other;
+        assay_bundle_entry other = {.name = NULL};
         if (assay_bundle_entry_at(candidate, i, &other) == ASSAY_OK &&
             strcmp(other.name, entry->name) == 0) {
             return fail_array(context, candidate, entry, "is listed twice");
@@ -231,7 +231,7 @@ assay_status bundle_match_arrays(assay_context *context, const assay_bundle_read
                                  const assay_bundle_reader *reference)
 {
     for (int i = 0; i < assay_bundle_count(candidate); i++) {
-        assay_bundle_entry entry;
+        assay_bundle_entry entry  = {.name = NULL};
         assay_status       status = assay_bundle_entry_at(candidate, i, &entry);
         status                    = status ? status : check_unique(context, candidate, i, &entry);
         status = status ? status : match_entry(context, candidate, reference, &entry);

@@ -7,7 +7,7 @@
 
 #include "oracle/critical_values.h"
 
-enum { ASSAY_NOISE_VIEWS = 6 };
+enum { ASSAY_NOISE_VIEWS = 8 };
 
 typedef struct {
     double variance, degrees; /* degrees of freedom of the variance */

@@ -64,28 +64,55 @@ static double mean_without_largest(const double *values, int count)
     return count > 3 ? (sum - largest) / (count - 1) : count > 0 ? sum / count : 0.0;
 }
 
+static double mean_of(const double *values, int count)
+{
+    double sum = 0.0;
+    for (int i = 0; i < count; i++) {
+        sum += values[i];
+    }
+    return sum / count;
+}
+
 static double ratio(double top, double bottom) { return bottom > 0.0 ? top / bottom : 0.0; }
+
+/* What is listed of each tile around. */
+enum { UP, DOWN, CANDIDATE_USUAL, REFERENCE_USUAL, CANDIDATE_EVENT, REFERENCE_EVENT, LOCALS };
+
+static void list_tile(const assay_noisy_sums *s, int at, double lists[LOCALS][NEIGHBOURS])
+{
+    lists[UP][at]              = ratio(s->candidate_variance, s->reference_variance);
+    lists[DOWN][at]            = ratio(s->reference_variance, s->candidate_variance);
+    lists[CANDIDATE_USUAL][at] = s->candidate_variance / s->pixels;
+    lists[REFERENCE_USUAL][at] = s->reference_variance / s->pixels;
+    lists[CANDIDATE_EVENT][at] = ratio(s->candidate_variance, s->candidate);
+    lists[REFERENCE_EVENT][at] = ratio(s->reference_variance, s->reference);
+}
 
 static assay_local_noise look_around(const assay_tile_level *tiles, int x, int y)
 {
-    double up[NEIGHBOURS], down[NEIGHBOURS], candidate[NEIGHBOURS], reference[NEIGHBOURS];
+    double lists[LOCALS][NEIGHBOURS];
     int    count = 0;
     for (int v = y - 1; v <= y + 1; v++) {
         for (int u = x - 1; u <= x + 1; u++) {
             if (u >= 0 && v >= 0 && u < tiles->columns && v < tiles->rows) {
-                const assay_noisy_sums *s =
-                    &tiles->sums[(size_t)v * (size_t)tiles->columns + (size_t)u];
-                up[count]        = ratio(s->candidate_variance, s->reference_variance);
-                down[count]      = ratio(s->reference_variance, s->candidate_variance);
-                candidate[count] = s->candidate_variance / s->pixels;
-                reference[count] = s->reference_variance / s->pixels;
-                count++;
+                list_tile(&tiles->sums[(size_t)v * (size_t)tiles->columns + (size_t)u], count++,
+                          lists);
             }
         }
     }
-    return (assay_local_noise){mean_without_largest(up, count), mean_without_largest(down, count),
-                               mean_without_largest(candidate, count),
-                               mean_without_largest(reference, count)};
+    return (assay_local_noise){mean_without_largest(lists[UP], count),
+                               mean_without_largest(lists[DOWN], count),
+                               mean_without_largest(lists[CANDIDATE_USUAL], count),
+                               mean_without_largest(lists[REFERENCE_USUAL], count),
+                               mean_of(lists[CANDIDATE_EVENT], count),
+                               mean_of(lists[REFERENCE_EVENT], count)};
+}
+
+/* Rare samples carry about the same light wherever they are found: variance goes with light. */
+static void fill_in_light(assay_noisy_sums *s, double candidate_event, double reference_event)
+{
+    s->by_reference_light = s->reference_variance + candidate_event * fmax(0.0, s->reference);
+    s->by_candidate_light = s->candidate_variance + reference_event * fmax(0.0, s->candidate);
 }
 
 static void fill_in(assay_noisy_sums *s, const assay_local_noise *local)
@@ -95,6 +122,7 @@ static void fill_in(assay_noisy_sums *s, const assay_local_noise *local)
     s->by_reference_spread = up * up * s->reference_spread;
     s->by_candidate        = down * s->candidate_variance;
     s->by_candidate_spread = down * down * s->candidate_spread;
+    fill_in_light(s, local->candidate_event, local->reference_event);
 }
 
 static void fit(assay_tile_level *tiles, assay_noise_model_kind kind, double *scratch,
@@ -139,6 +167,21 @@ assay_status assay_noise_model_fit(assay_context *context, assay_tile_level *til
     return ok ? ASSAY_OK : assay_fail_memory(context, "the noise of tiles");
 }
 
+void assay_noise_model_light(assay_tile_sums *sums)
+{
+    for (int l = 1; l < sums->level_count; l++) {
+        const assay_tile_level *level = &sums->levels[l];
+        for (size_t i = 0; i < level->count; i++) {
+            const assay_local_noise local = look_around(level, (int)(i % (size_t)level->columns),
+                                                        (int)(i / (size_t)level->columns));
+            fill_in_light(&level->sums[i], local.candidate_event, local.reference_event);
+        }
+    }
+    assay_noisy_sums *whole = &sums->whole;
+    fill_in_light(whole, ratio(whole->candidate_variance, whole->candidate),
+                  ratio(whole->reference_variance, whole->reference));
+}
+
 void assay_noise_model_release(assay_noise_model *model)
 {
     if (model->context) {
@@ -163,6 +206,8 @@ assay_noise assay_noise_of_region(const assay_noise_model *model, const assay_no
              design * design * (sums->candidate_spread + sums->reference_spread));
     add_view(&noise, design * sums->by_reference, design * design * sums->by_reference_spread);
     add_view(&noise, design * sums->by_candidate, design * design * sums->by_candidate_spread);
+    assay_noise_add(&noise, design * sums->by_reference_light, ASSAY_NORMAL);
+    assay_noise_add(&noise, design * sums->by_candidate_light, ASSAY_NORMAL);
     if (model->alone) {
         /* Self-normalised: of symmetric noise the tail is below the normal one's bound [efron69].
          */
@@ -203,5 +248,7 @@ assay_noise assay_noise_of_pixel(const assay_noise_model *model, const assay_noi
     add_view(&noise, s.by_candidate, s.by_candidate_spread);
     assay_noise_add(&noise, s.reference_variance + local->candidate, ASSAY_NORMAL);
     assay_noise_add(&noise, s.candidate_variance + local->reference, ASSAY_NORMAL);
+    assay_noise_add(&noise, s.by_reference_light, ASSAY_NORMAL);
+    assay_noise_add(&noise, s.by_candidate_light, ASSAY_NORMAL);
     return noise;
 }

@@ -11,10 +11,12 @@
 #include "oracle/noise.h"
 #include "oracle/tile_sums.h"
 
-/* Of a tile of the smallest size. */
+/* Near a tile of the smallest size. */
 typedef struct {
     double up, down;             /* candidate's variance over the reference's, and the other way */
-    double candidate, reference; /* variances of a pixel, as usual near here                     */
+    double candidate, reference; /* variances of a pixel                                         */
+    double candidate_event, reference_event; /* variance over mean: a sample's usual light over
+                                                the samples of a pixel                           */
 } assay_local_noise;
 
 typedef struct {
@@ -34,7 +36,10 @@ typedef enum {
  * Errors: MEMORY. */
 assay_status assay_noise_model_fit(assay_context *context, assay_tile_level *tiles,
                                    assay_noise_model_kind kind, assay_noise_model *model_out);
-void         assay_noise_model_release(assay_noise_model *model);
+/* Fills in, of tiles of all sizes and of the whole, what light lets expect near there; once larger
+ * tiles are gathered. */
+void assay_noise_model_light(assay_tile_sums *sums);
+void assay_noise_model_release(assay_noise_model *model);
 
 /* Of the tile that the pixel is in. */
 const assay_local_noise *assay_noise_near(const assay_noise_model *model, int x, int y);

@@ -35,6 +35,7 @@ typedef struct {
     /* What the noise model makes of either image's variance alone; 0 before it was asked. */
     double by_reference, by_reference_spread;
     double by_candidate, by_candidate_spread;
+    double by_reference_light, by_candidate_light;
 } assay_noisy_sums;
 
 static inline double assay_noisy_degrees(const assay_noisy_channel *channel, size_t pixel)
@@ -77,6 +78,8 @@ static inline void assay_noisy_add(assay_noisy_sums *sums, const assay_noisy_sum
     sums->by_reference_spread += more->by_reference_spread;
     sums->by_candidate += more->by_candidate;
     sums->by_candidate_spread += more->by_candidate_spread;
+    sums->by_reference_light += more->by_reference_light;
+    sums->by_candidate_light += more->by_candidate_light;
 }
 
 #endif

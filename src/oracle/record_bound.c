@@ -50,17 +50,22 @@ static bound_membership is_not_in_front(const rounding *r, const assay_record *r
     return at_most(least, height);
 }
 
+/* What is a root or a distance is not below 0, however far it may be off. */
+static double low_root(tracked a) { return fmax(tracked_low(a), 0.0); }
+
 static weight_bound ward(const rounding *r, tracked moved, tracked turned, double a)
 {
-    const tracked change = tracked_add(r, moved, turned);
-    const double  low    = tracked_low(change);
-    const tracked limit  = tracked_constant(r, a);
-    /* The test may be w >= 1 / a, where both sides are rounded quotients. */
-    const tracked spared = {limit.v, limit.e + 4.0 * r->u * limit.v};
+    const double change = moved.v + turned.v;
+    const double low    = (low_root(moved) + low_root(turned)) * (1.0 - r->u);
+    const double high   = (tracked_high(moved) + tracked_high(turned)) * (1.0 + r->u);
+    /* a is rounded; and the test may be w >= 1 / a, where both sides are rounded quotients. */
+    const double spare = 5.0 * r->u * a;
     return (weight_bound){
-        .member = at_most(change, spared),
-        .value  = change.v < 1.0 / ASSAY_WEIGHT_MAX ? ASSAY_WEIGHT_MAX : 1.0 / change.v,
-        .low    = fmin(ASSAY_WEIGHT_MAX, (1.0 - r->u) / tracked_high(change)),
+        .member = high < a - spare  ? BOUND_IN
+                  : low > a + spare ? BOUND_OUT
+                                    : BOUND_MAYBE,
+        .value  = change < 1.0 / ASSAY_WEIGHT_MAX ? ASSAY_WEIGHT_MAX : 1.0 / change,
+        .low    = fmin(ASSAY_WEIGHT_MAX, (1.0 - r->u) / high),
         .high   = low > 1.0 / ASSAY_WEIGHT_MAX ? (1.0 + r->u) / low
                                                : ASSAY_WEIGHT_MAX * (1.0 + 2.0 * r->u)};
 }
@@ -68,13 +73,17 @@ static weight_bound ward(const rounding *r, tracked moved, tracked turned, doubl
 static weight_bound tabellion(const rounding *r, tracked moved, tracked turned, double a)
 {
     const tracked by_turn = tracked_div(r, turned, tracked_constant(r, RECORD_ROOT_10_DEG));
-    const tracked change  = {fmax(moved.v, by_turn.v), fmax(moved.e, by_turn.e)};
-    const tracked weight =
-        tracked_sub(r, tracked_exact(1.0), tracked_div(r, change, tracked_constant(r, a)));
-    return (weight_bound){.member = at_most(tracked_exact(0.0), weight),
-                          .value  = fmax(weight.v, 0.0),
-                          .low    = fmax(tracked_low(weight), 0.0),
-                          .high   = fmax(tracked_high(weight), 0.0)};
+    const double  low     = fmax(low_root(moved), low_root(by_turn));
+    const double  high    = fmax(tracked_high(moved), tracked_high(by_turn));
+    /* The quotient by a rounded a, and the difference from 1. */
+    const double least = 1.0 - high / a * (1.0 + 4.0 * r->u) - r->u;
+    const double most  = 1.0 - low / a * (1.0 - 4.0 * r->u) + r->u;
+    return (weight_bound){.member = least > 0.0  ? BOUND_IN
+                                    : most < 0.0 ? BOUND_OUT
+                                                 : BOUND_MAYBE,
+                          .value  = fmax(1.0 - fmax(moved.v, by_turn.v) / a, 0.0),
+                          .low    = fmax(least, 0.0),
+                          .high   = fmax(most, 0.0)};
 }
 
 weight_bound record_weight_bound(const rounding *r, bool exact, const assay_record *record,

@@ -48,7 +48,7 @@ static bool read_camera(const stage_run *run, assay_camera *camera)
 static bool find_sides(const stage_run *run, size_t pixels, int *width, int *height)
 {
     for (int i = 0; i < assay_bundle_count(run->bundle); i++) {
-        assay_bundle_entry entry;
+        assay_bundle_entry entry = {.name = NULL};
         if (assay_bundle_entry_at(run->bundle, i, &entry) == ASSAY_OK && entry.image &&
             entry.dimensions == 3 && (pixels == 0 || entry.shape[0] * entry.shape[1] == pixels) &&
             entry.shape[0] <= ASSAY_IMAGE_MAX_SIDE && entry.shape[1] <= ASSAY_IMAGE_MAX_SIDE) {

@@ -138,21 +138,6 @@ static assay_status ask_points(void *user, uint64_t chunk, int worker)
     return status;
 }
 
-static assay_status fill_store(const stage_records *records, assay_record_store **store_out)
-{
-    assay_vec3 low = vec3(INFINITY, INFINITY, INFINITY), high = vec3_negate(low);
-    for (size_t i = 0; i < records->count; i++) {
-        low  = vec3_min(low, records->records[i].position);
-        high = vec3_max(high, records->records[i].position);
-    }
-    assay_status status = assay_record_store_create(records->context, &records->rules, low, high,
-                                                    ASSAY_INDEX_OCTREE, store_out);
-    for (size_t i = 0; i < records->count && status == ASSAY_OK; i++) {
-        status = assay_record_store_add(*store_out, &records->records[i]);
-    }
-    return status;
-}
-
 static assay_status make_room(stage_run *run, job_data *job)
 {
     const size_t points  = run->in[QUERY_POSITION].rows;
@@ -196,7 +181,7 @@ static assay_status ask_all(stage_run *run, stage_records *records)
         return stage_fail_rows(run, QUERY_NORMAL, points, "one a point, as of query/position");
     }
     assay_status status = stage_unit_vectors(run, QUERY_NORMAL, 0, &normals);
-    status              = status ? status : fill_store(records, &job.store);
+    status              = status ? status : stage_records_store(records, &job.store);
     status              = status ? status : make_room(run, &job);
     if (status == ASSAY_OK && run->bounded) {
         status = stage_records_index(records, &run->rounding, points,

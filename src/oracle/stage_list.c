@@ -13,6 +13,7 @@ const oracle_stage *const assay_stages[] = {
     &stage_weights,
     &stage_interpolate,
     &stage_splat,
+    &stage_splat_light,
     &stage_normalise,
     &stage_combine,
     &stage_project,

@@ -29,40 +29,69 @@ static const assay_stage_array OUTPUTS[] = {
     {0}};
 /* clang-format on */
 
+/* Scratch of the bounds: functions of a direction, sums of all channels. */
+typedef struct {
+    tracked     *functions;
+    double      *values;
+    tracked_sum *sums;
+} bound_room;
+
+static assay_status add_sample(const stage_run *run, const assay_basis *basis, assay_vec3 direction,
+                               size_t sample, size_t channels, const bound_room *room)
+{
+    const rounding    *r      = &run->rounding;
+    const size_t       count  = assay_basis_count(basis);
+    const assay_status status = assay_basis_evaluate(basis, direction, room->values);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    basis_bound(r, basis, direction, room->values, room->functions);
+    for (size_t c = 0; c < channels; c++) {
+        const tracked value =
+            tracked_div(r, tracked_given(r, run->in[VALUE].values[sample * channels + c]),
+                        tracked_given(r, run->in[PDF].values[sample]));
+        for (size_t k = 0; k < count; k++) {
+            tracked_sum_add(&room->sums[c * count + k], tracked_mul(r, value, room->functions[k]));
+        }
+    }
+    return ASSAY_OK;
+}
+
+static assay_status add_samples(const stage_run *run, const assay_basis *basis,
+                                const assay_vec3 *directions, size_t channels,
+                                const bound_room *room, double *bounds)
+{
+    const rounding *r          = &run->rounding;
+    const size_t    samples    = run->in[DIRECTION].rows;
+    const bool      hemisphere = assay_basis_kind_is_hemispherical(assay_basis_kind_of(basis));
+    assay_status    status     = ASSAY_OK;
+    for (size_t s = 0; s < samples && status == ASSAY_OK; s++) {
+        if (!hemisphere || directions[s].z >= 0.0) {
+            status = add_sample(run, basis, directions[s], s, channels, room);
+        }
+    }
+    for (size_t k = 0; k < channels * assay_basis_count(basis) && status == ASSAY_OK; k++) {
+        const tracked sum = tracked_sum_of(r, &room->sums[k]);
+        bounds[k]         = tracked_div(r, sum, tracked_exact((double)samples)).e +
+                    r->u * room->sums[k].size / (double)samples; /* or each term is divided */
+    }
+    return status;
+}
+
 static assay_status fill_bounds(const stage_run *run, const assay_basis *basis,
                                 const assay_vec3 *directions, size_t channels, double *bounds)
 {
-    const rounding *r       = &run->rounding;
-    const size_t    samples = run->in[DIRECTION].rows, count = assay_basis_count(basis);
-    const bool      hemisphere = assay_basis_kind_is_hemispherical(assay_basis_kind_of(basis));
-    tracked        *functions  = assay_allocate(run->context, count, sizeof *functions);
-    double         *values     = assay_allocate(run->context, count, sizeof *values);
-    tracked_sum    *sums       = assay_allocate(run->context, channels * count, sizeof *sums);
-    assay_status    status =
-        functions && values && sums ? ASSAY_OK : assay_fail_memory(run->context, "a projection");
-    for (size_t s = 0; s < samples && status == ASSAY_OK; s++) {
-        if (hemisphere && directions[s].z < 0.0) {
-            continue;
-        }
-        status = assay_basis_evaluate(basis, directions[s], values);
-        basis_bound(r, basis, directions[s], values, functions);
-        for (size_t c = 0; c < channels && status == ASSAY_OK; c++) {
-            const tracked value =
-                tracked_div(r, tracked_given(r, run->in[VALUE].values[s * channels + c]),
-                            tracked_given(r, run->in[PDF].values[s]));
-            for (size_t k = 0; k < count; k++) {
-                tracked_sum_add(&sums[c * count + k], tracked_mul(r, value, functions[k]));
-            }
-        }
-    }
-    for (size_t k = 0; k < channels * count && status == ASSAY_OK; k++) {
-        const tracked sum = tracked_sum_of(r, &sums[k]);
-        bounds[k]         = tracked_div(r, sum, tracked_exact((double)samples)).e +
-                    r->u * sums[k].size / (double)samples; /* or each term is divided */
-    }
-    assay_release(run->context, functions);
-    assay_release(run->context, values);
-    assay_release(run->context, sums);
+    const size_t     count = assay_basis_count(basis);
+    const bound_room room  = {
+         .functions = assay_allocate(run->context, count, sizeof *room.functions),
+         .values    = assay_allocate(run->context, count, sizeof *room.values),
+         .sums      = assay_allocate(run->context, channels * count, sizeof *room.sums)};
+    const assay_status status = room.functions && room.values && room.sums
+                                    ? add_samples(run, basis, directions, channels, &room, bounds)
+                                    : assay_fail_memory(run->context, "a projection");
+    assay_release(run->context, room.functions);
+    assay_release(run->context, room.values);
+    assay_release(run->context, room.sums);
     return status;
 }
 

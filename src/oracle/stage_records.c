@@ -17,14 +17,16 @@ assay_status stage_unit_vectors(stage_run *run, int input, size_t column, assay_
     assay_vec3        *v       = assay_allocate(run->context, t->rows, sizeof *v);
     double             moved   = 0.0;
     if (!v) {
-        return assay_fail_memory(run->context, "unit vectors");
+        assay_fail_memory(run->context, "unit vectors");
+        return ASSAY_ERR_MEMORY;
     }
     for (size_t i = 0; i < t->rows; i++) {
         v[i]              = stage_vec3(t->values + i * t->columns + column);
         const double away = fabs(vec3_length(v[i]) - 1.0);
         if (!(away <= allowed)) {
             assay_release(run->context, v);
-            return stage_fail_value(run, input, i, column, "a vector that is not of unit length");
+            stage_fail_value(run, input, i, column, "a vector that is not of unit length");
+            return ASSAY_ERR_DOMAIN;
         }
         if (away > UNIT_TOLERANCE) {
             v[i]  = vec3_normalize(v[i]);
@@ -139,6 +141,21 @@ void stage_records_close(stage_records *records)
         assay_octree_destroy(records->octree);
         assay_release(records->context, records->records);
     }
+}
+
+assay_status stage_records_store(const stage_records *records, assay_record_store **store_out)
+{
+    assay_vec3 low = vec3(INFINITY, INFINITY, INFINITY), high = vec3_negate(low);
+    for (size_t i = 0; i < records->count; i++) {
+        low  = vec3_min(low, records->records[i].position);
+        high = vec3_max(high, records->records[i].position);
+    }
+    assay_status status = assay_record_store_create(records->context, &records->rules, low, high,
+                                                    ASSAY_INDEX_OCTREE, store_out);
+    for (size_t i = 0; i < records->count && status == ASSAY_OK; i++) {
+        status = assay_record_store_add(*store_out, &records->records[i]);
+    }
+    return status;
 }
 
 /* ---- what may contribute ---- */

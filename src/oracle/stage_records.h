@@ -79,6 +79,9 @@ typedef struct {
 assay_status stage_records_open(stage_run *run, bool said, stage_records *records_out);
 void         stage_records_close(stage_records *records);
 
+/* A store of them, with their rules.  Errors: MEMORY, LIMIT. */
+assay_status stage_records_store(const stage_records *records, assay_record_store **store_out);
+
 /* Unit vectors of an input, 3 columns from `column` on; those that were stored with few digits are
  * brought to unit length, and run->rounding says what that was.  Errors: DOMAIN, MEMORY. */
 assay_status stage_unit_vectors(stage_run *run, int input, size_t column, assay_vec3 **vectors_out);

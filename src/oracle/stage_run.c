@@ -94,7 +94,7 @@ bool stage_find_name(const assay_bundle_reader *bundle, const char *pattern,
     const char *mark = strchr(pattern, '#');
     long        last = -1;
     for (int i = 0; mark && i < assay_bundle_count(bundle); i++) {
-        assay_bundle_entry entry;
+        assay_bundle_entry entry = {.name = NULL};
         if (assay_bundle_entry_at(bundle, i, &entry) == ASSAY_OK &&
             number_of(pattern, mark, entry.name) > last) {
             last = number_of(pattern, mark, entry.name);
@@ -164,9 +164,9 @@ static assay_status check_values(const stage_run *run, int input)
 
 static assay_status read_input(stage_run *run, int input)
 {
-    const assay_stage_array *desc = &run->stage->info.inputs[input];
-    stage_table             *t    = &run->in[input];
-    assay_bundle_entry       entry;
+    const assay_stage_array *desc  = &run->stage->info.inputs[input];
+    stage_table             *t     = &run->in[input];
+    assay_bundle_entry       entry = {.name = NULL};
     if (!stage_find_name(run->bundle, desc->name, t->name)) {
         return desc->optional
                    ? ASSAY_OK

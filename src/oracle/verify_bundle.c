@@ -118,7 +118,7 @@ static void describe(const comparison *c, assay_verdict_kind kind, char *words, 
 
 static assay_place place_of(const verification *v, const comparison *c)
 {
-    assay_bundle_entry entry;
+    assay_bundle_entry entry = {.name = NULL};
     const size_t       row = c->worst / c->out->columns, column = c->worst % c->out->columns;
     if (assay_bundle_entry_of(v->candidate, c->out->name, &entry) == ASSAY_OK && entry.image) {
         return assay_place_pixel((int)(row % entry.shape[1]), (int)(row / entry.shape[1]));
@@ -182,8 +182,8 @@ static assay_status judge_array(const verification *v, const stage_run *run,
 {
     static const double roundoffs[] = {0x1p-11, 0x1p-24, 0x1p-53};
     assay_array        *table       = NULL;
-    assay_bundle_entry  entry;
-    assay_status        status = assay_bundle_entry_of(v->candidate, out->name, &entry);
+    assay_bundle_entry  entry       = {.name = NULL};
+    assay_status        status      = assay_bundle_entry_of(v->candidate, out->name, &entry);
     if (status == ASSAY_OK && strcmp(entry.unit, out->unit) != 0) {
         return assay_fail(v->context, ASSAY_ERR_FORMAT,
                           "%s: bundle: '%s' is in '%.40s', not in '%s'",
@@ -249,7 +249,7 @@ static assay_status tell_unjudged(const verification *v)
     char   text[1024] = "";
     size_t used       = 0;
     for (int i = 0; i < assay_bundle_count(v->candidate); i++) {
-        assay_bundle_entry entry;
+        assay_bundle_entry entry = {.name = NULL};
         if (assay_bundle_entry_at(v->candidate, i, &entry) != ASSAY_OK) {
             continue;
         }

@@ -261,6 +261,9 @@ assay_status assay_verify_channel_prepare(assay_context            *context,
                                        model_kind(channel, options), &channel->model);
     }
     status = status != ASSAY_OK ? status : assay_tile_sums_gather(&channel->sums);
+    if (status == ASSAY_OK) {
+        assay_noise_model_light(&channel->sums);
+    }
     if (status == ASSAY_OK && channel->source == ASSAY_NOISE_RUNS) {
         status = fit_runs(context, candidates, count, channel);
     }

@@ -142,31 +142,38 @@ assay_status assay_verify_channels_choose(assay_context *context, const assay_im
     return ASSAY_OK;
 }
 
+enum { MOST_NAMES = 2 * MOST_CHANNELS + 2, NAME = ASSAY_CHANNEL_NAME + 16 };
+
+/* Texts stand behind the pointers to them, in one block. */
+static void write_names(const assay_verify_channel *channels, int count, const char **names)
+{
+    char *text = (char *)(names + MOST_NAMES + 1);
+    for (int i = 0; i < 2 * count; i++, text += NAME) {
+        snprintf(text, NAME, "%s%s", i % 2 ? "Variance." : "", channels[i / 2].name);
+        names[i] = text;
+    }
+    names[2 * count]     = "SampleCount";
+    names[2 * count + 1] = "SampleCount.Irradiance";
+}
+
 assay_status assay_verify_channels_names(assay_context *context, const char *list,
                                          const char ***names_out)
 {
-    enum { MOST_NAMES = 2 * MOST_CHANNELS + 2, NAME = ASSAY_CHANNEL_NAME + 16 };
     int                   count    = 0;
     assay_verify_channel *channels = assay_allocate(context, MOST_CHANNELS, sizeof *channels);
-    const size_t          pointers = (MOST_NAMES + 1) * sizeof(char *);
-    const char          **names = assay_allocate(context, 1, pointers + (size_t)MOST_NAMES * NAME);
-    assay_status          status =
-        channels && names ? ASSAY_OK : assay_fail_memory(context, "the channels to compare");
-    status = status != ASSAY_OK ? status : list_channels(context, list, channels, &count);
+    if (!channels) {
+        return assay_fail_memory(context, "the channels to compare");
+    }
+    assay_status status = list_channels(context, list, channels, &count);
+    const char **names  = NULL;
     if (status == ASSAY_OK) {
-        char *text = (char *)names + pointers;
-        for (int i = 0; i < 2 * count + 2; i++, text += NAME) {
-            names[i] = text;
-            if (i < 2 * count) {
-                snprintf(text, NAME, "%s%s", i % 2 ? "Variance." : "", channels[i / 2].name);
-            } else {
-                snprintf(text, NAME, "%s",
-                         i == 2 * count ? "SampleCount" : "SampleCount.Irradiance");
-            }
-        }
+        names  = assay_allocate(context, 1,
+                                (MOST_NAMES + 1) * sizeof *names + (size_t)MOST_NAMES * NAME);
+        status = names ? ASSAY_OK : assay_fail_memory(context, "the channels to compare");
+    }
+    if (names) {
+        write_names(channels, count, names);
         *names_out = names;
-    } else {
-        assay_release(context, names);
     }
     assay_release(context, channels);
     return status;

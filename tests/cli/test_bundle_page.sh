@@ -74,6 +74,26 @@ refuses "replay: an output that is there" 3 "there already" replay splat --in "$
 refuses "replay: no output" 2 "-o BUNDLE" replay splat --in "$folder/dump"
 refuses "replay: no input" 2 "--in BUNDLE" replay splat -o "$out/a"
 refuses "replay: bounds of what" 2 "half, float or double" replay splat --bounds quad
+
+# ---- with a scene ----
+accepts "replay: the cells of all records" replay gather --in "$folder/dump" --scene "$box" -o "$folder/cells"
+accepts "replay: what follows from them" replay irradiance --in "$folder/cells" -o "$folder/records" \
+    --with-inputs
+for array in irradiance rotation_gradient translation_gradient harmonic_mean nearest; do
+    cmp "$folder/records/records/$array.npy" "$folder/dump/records/$array.npy"
+    result $? "replay: records/$array to the bit"
+done
+run verify "$folder/records" --reference "$folder/records" --precision float --list
+went_well && grep -q 'irradiance.*records/nearest.*pass' "$folder/stdout"
+result $? "verify: records from their cells"
+for precision in float double; do
+    run verify "$folder/dump" --reference "$folder/dump" --scene "$box" --precision $precision --list
+    went_well && grep -q 'visible.*gbuffer/position.*pass' "$folder/stdout"
+    result $? "verify: a dump with its scene, $precision"
+done
+refuses "verify: another scene" 2 "assay:scene.digest" verify "$folder/dump" \
+    --reference "$folder/dump" --scene scenes/furnace/furnace.gltf
+refuses "replay: a scene is missing" 2 "needs a scene" replay visible --in "$folder/dump" -o "$out/a"
 refuses "verify: a scene and an image" 2 "bundles" verify "$folder/a.exr" --reference "$folder/a.exr" \
     --scene "$box"
 refuses "verify: two bundles" 2 "one bundle" verify "$folder/dump" "$folder/dump" \

@@ -13,9 +13,11 @@
 #include "oracle/basis_bound.h"
 #include "oracle/irradiance_bound.h"
 #include "oracle/mean_bound.h"
+#include "oracle/record_bound.h"
 #include "support/measure.h"
 #include "support/near.h"
 #include "support/random_places.h"
+#include "support/stage_case.h"
 
 static const rounding FLOAT = {.u = 0x1p-24, .tiny = 0x1p-126, .given = 0x1p-24};
 
@@ -98,6 +100,30 @@ static void test_flat_hemisphere(void **state)
     assay_hemisphere_destroy(*state, h);
 }
 
+/* What may contribute is no farther away than the reach that an index is made with. */
+static void test_reach(void **state)
+{
+    const rounding           half   = {.u = 0x1p-11, .tiny = 0x1p-25, .given = 0x1p-11};
+    const assay_record_rules rules  = {.a = 0.5};
+    assay_random             random = assay_random_start(3, ASSAY_STAGE_TEST, 5, 0);
+    size_t                   maybe  = 0;
+    (void)state;
+    for (int trial = 0; trial < 5000; trial++) {
+        assay_record       record = {.position = random_box(&random, -9.0, 9.0),
+                                     .normal   = random_unit(&random),
+                                     .radius   = random_in(&random, 0.1, 1.0)};
+        const double       far    = rules.a * record.radius + random_in(&random, 0.0, 0.03);
+        const assay_vec3   p      = vec3_mad(record.position, far, random_unit(&random));
+        const weight_bound w = record_weight_bound(&half, true, &record, &rules, p, record.normal);
+        if (w.member != BOUND_OUT) {
+            maybe++;
+            assert_true(record_reach_bound(&half, &record, &rules,
+                                           fmax(fmax(fabs(p.x), fabs(p.y)), fabs(p.z))) >= far);
+        }
+    }
+    assert_true(maybe > 100);
+}
+
 /* Near a pole, near the horizon, or where cos m phi is all but 0: what the rounding turns there is
  * large beside the function. */
 static assay_vec3 delicate_direction(assay_random *random, int trial)
@@ -119,7 +145,8 @@ static assay_vec3 delicate_direction(assay_random *random, int trial)
 static void test_rounded_directions(void **state)
 {
     enum { ORDER = 8, MOST = ORDER * ORDER };
-    assay_random random = assay_random_start(2, ASSAY_STAGE_TEST, 5, 0);
+    const few_digits single = {.digits = 24};
+    assay_random     random = assay_random_start(2, ASSAY_STAGE_TEST, 5, 0);
     for (int kind = 0; kind < ASSAY_BASIS_KIND_COUNT; kind++) {
         assay_basis *basis = NULL;
         double       most  = 0.0;
@@ -133,7 +160,7 @@ static void test_rounded_directions(void **state)
             double           right[MOST], values[MOST];
             tracked          bound[MOST];
             const assay_vec3 d = delicate_direction(&random, trial);
-            const assay_vec3 r = vec3((float)d.x, (float)d.y, (float)d.z);
+            const assay_vec3 r = vec3(few(&single, d.x), few(&single, d.y), few(&single, d.z));
             assert_int_equal(assay_basis_evaluate(basis, d, right), ASSAY_OK);
             assert_int_equal(assay_basis_evaluate(basis, r, values), ASSAY_OK);
             basis_bound(&FLOAT, basis, d, right, bound);
@@ -154,6 +181,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_means),
         cmocka_unit_test(test_worst_mean),
+        cmocka_unit_test(test_reach),
         cmocka_unit_test_setup_teardown(test_flat_hemisphere, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_rounded_directions, context_set_up, context_tear_down),
     };

@@ -78,7 +78,7 @@ static void as_defined(void **state)
     uint64_t found[2] = {0, 0};
     for (uint64_t round = 0; round < 2000; round++) {
         assay_random random = assay_random_start(1, ASSAY_STAGE_TEST, round, 0);
-        double       p[COUNT], sorted[COUNT];
+        double       p[COUNT], sorted[COUNT] = {0};
         for (int i = 0; i < COUNT; i++) {
             const double u = assay_random_next(&random) + 1e-9;
             p[i]           = i % 3 == 0 ? u * u * u * u : u;

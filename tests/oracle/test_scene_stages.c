@@ -123,8 +123,11 @@ static void few_camera_ray(const candidate *c, const assay_camera *camera, doubl
     const double      wide = few(f, high * few(f, (double)WIDTH / HEIGHT));
     const double      sx   = few(f, few(f, few(f, 2.0 * x / WIDTH) - 1.0) * wide);
     const double      sy   = few(f, few(f, 1.0 - few(f, 2.0 * y / HEIGHT)) * high);
-    const double     *r = &camera->right.x, *u = &camera->up.x, *w = &camera->forward.x;
-    const double     *origin = &camera->position.x;
+    double            r[3], u[3], w[3], origin[3];
+    memcpy(r, &camera->right, sizeof r);
+    memcpy(u, &camera->up, sizeof u);
+    memcpy(w, &camera->forward, sizeof w);
+    memcpy(origin, &camera->position, sizeof origin);
     for (int i = 0; i < 3; i++) {
         const double a = few(f, sx * few(f, r[i])), b = few(f, sy * few(f, u[i]));
         d[i] = few(f, few(f, few(f, w[i]) + a) + b);

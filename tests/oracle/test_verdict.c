@@ -327,14 +327,15 @@ static void words(void **state)
 
 /* ---- memory ---- */
 
+typedef assay_status (*output)(const assay_verdict *verdict, char **text_out);
+
 static assay_status everything(assay_context *context, void *user)
 {
-    assay_verdict *verdict                   = NULL;
-    char          *text                      = NULL;
-    assay_status (*const outputs[])(const assay_verdict *,
-                                    char **) = {assay_verdict_paragraph, assay_verdict_json,
-                                                assay_verdict_junit, assay_verdict_annotations};
-    assay_status status                      = assay_verdict_create(context, "c", "r", &verdict);
+    const output   outputs[] = {assay_verdict_paragraph, assay_verdict_json, assay_verdict_junit,
+                                assay_verdict_annotations};
+    assay_verdict *verdict   = NULL;
+    char          *text      = NULL;
+    assay_status   status    = assay_verdict_create(context, "c", "r", &verdict);
     for (int i = 0; status == ASSAY_OK && i < 20; i++) {
         assay_finding f = finding("image", "R", i ? ASSAY_VERDICT_FAIL : ASSAY_VERDICT_PASS);
         f.channel       = "X";

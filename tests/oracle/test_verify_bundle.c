@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "support/failing_context.h"
 #include "support/measure.h"
 #include "support/random_places.h"
 #include "support/splat_room.h"
@@ -38,6 +39,9 @@ static const char *const UNITS[]  = {
 enum { ARRAY_COUNT = sizeof ARRAYS / sizeof ARRAYS[0], MOST = 9 * PIXELS };
 static const size_t COLUMNS[ARRAY_COUNT] = {3, 3, 1, 3, 9, 9, 3, 9, 3, 1, 3, 3, 3, 3, 3};
 enum { ALBEDO = 8, INPUTS = 11 };
+/* A pixel at record 5: its weight is 1e12, or what a float makes of that. */
+enum { STANDS = 33 };
+
 enum { WEIGHT = 9, SUM, RESULT, DIRECT, INDIRECT, TOTAL };
 
 typedef struct {
@@ -49,12 +53,15 @@ static size_t rows_of(int array) { return array < 6 ? RECORDS : PIXELS; }
 /* Stages of a right candidate of float: everything is a float. */
 static void round_all(data *d)
 {
+    const few_digits single = {.digits = 24};
     for (int a = 0; a < ARRAY_COUNT; a++) {
         for (size_t i = 0; i < MOST; i++) {
-            d->values[a][i] = (double)(float)d->values[a][i];
+            d->values[a][i] = few(&single, d->values[a][i]);
         }
     }
 }
+
+static assay_vec3 vec3_at(const double *v) { return vec3(v[0], v[1], v[2]); }
 
 static void make_inputs(data *d)
 {
@@ -72,6 +79,10 @@ static void make_inputs(data *d)
         assay_vec3 p = vec3(NAN, NAN, NAN), n = vec3(0.0, 0.0, 1.0);
         splat_room_point(&camera, SIDE, SIDE, i, &p, &n);
         p = i == 7 ? vec3(NAN, NAN, NAN) : p;
+        if (i == STANDS) {
+            p = vec3_at(&d->values[0][15]);
+            n = vec3_at(&d->values[1][15]);
+        }
         memcpy(&d->values[6][3 * i], &p, sizeof p);
         memcpy(&d->values[7][9 * i + 6], &n, sizeof n);
         for (size_t c = 0; c < 3; c++) {
@@ -163,14 +174,15 @@ static void test_right(void **state)
     data          *d       = make_data(*state);
     assay_verdict *verdict = verify(*state, d, d, ASSAY_PRECISION_FLOAT);
     assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_PASS);
-    assert_int_equal(assay_verdict_count(verdict), 4 + INPUTS);
+    assert_int_equal(assay_verdict_count(verdict), 5 + INPUTS);
     assert_string_equal(assay_verdict_at(verdict, 0).stage, "splat");
-    assert_string_equal(assay_verdict_at(verdict, 2).stage, "normalise");
-    assert_string_equal(assay_verdict_at(verdict, 3).stage, "combine");
+    assert_string_equal(assay_verdict_at(verdict, 2).stage, "splat-light");
+    assert_string_equal(assay_verdict_at(verdict, 3).stage, "normalise");
+    assert_string_equal(assay_verdict_at(verdict, 4).stage, "combine");
     assert_string_equal(assay_verdict_get(verdict, "precision"), "float");
     assert_int_equal(count_of(verdict, "inputs"), INPUTS);
     assert_null(assay_verdict_get(verdict, "not judged"));
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 5; i++) {
         const assay_finding f = assay_verdict_at(verdict, i);
         assert_true(f.in_bounds >= 0.0 && f.in_bounds <= 1.0 && f.bound > 0.0);
         assert_int_equal(f.values, PIXELS * (i == 0 ? 1 : 3));
@@ -232,6 +244,8 @@ static const planted DEFECTS[] = {
     {"a weight", WEIGHT, 1.0001, 0.0, 40, 41, "splat", "made in it"},
     {"all weights", WEIGHT, 0.99, 0.0, 0, 0, "splat", "0.99 times"},
     {"the sums", SUM, 3.14159265358979, 0.0, 0, 0, "splat", "3.14159 times"},
+    {"radiance where a record stands", SUM, 1.05, 0.0, STANDS, STANDS + 1, "splat-light",
+     "made in it"},
     {"the results", RESULT, -1.0, 0.0, 0, 0, "normalise", "wrong sign"},
     {"one result", RESULT, 1.0, 1e-4, 100, 101, "normalise", "made in it"},
     {"the image", TOTAL, 1.0, 0.001, 0, 128, "combine", "made in it"},
@@ -346,7 +360,7 @@ static void test_other_arrays(void **state)
         assay_status status;
         const char  *word;
     } cases[] = {
-        {"splat/surprise", "m", PIXELS, 1, 0.0, ASSAY_ERR_FORMAT, "splat/surprise"},
+        {"splat/surprise", "m", PIXELS, 1, 0.0, ASSAY_ERR_FORMAT, "surprise' is not an array"},
         {"splat/result", "W/m2", PIXELS, 3, 0.0, ASSAY_ERR_FORMAT, "W/m2"},
         {"splat/result", "W/(m2 sr)", PIXELS, 4, 0.0, ASSAY_ERR_FORMAT, "splat/result"},
         {"splat/result", "W/(m2 sr)", PIXELS - 1, 3, 0.0, ASSAY_ERR_FORMAT, "splat/result"},
@@ -463,6 +477,37 @@ static void test_lying_manifest(void **state)
     free(d);
 }
 
+typedef struct {
+    const char *candidate, *reference;
+} paths;
+
+static assay_status verify_once(assay_context *context, void *user)
+{
+    const paths   *p       = user;
+    assay_verdict *verdict = NULL;
+    assay_status   status  = assay_verdict_create(context, "candidate", "reference", &verdict);
+    status                 = status ? status
+                                    : assay_verify_bundle(context, p->candidate, p->reference, NULL,
+                                                          ASSAY_PRECISION_FLOAT, verdict);
+    assay_verdict_destroy(verdict);
+    return status;
+}
+
+static void test_refused_memory(void **state)
+{
+    data       *d = make_data(*state);
+    stage_case  c = stage_case_begin(*state), r = stage_case_begin(*state);
+    const paths p = {c.path, r.path};
+    add_arrays(&c, d, -1);
+    add_arrays(&r, d, -1);
+    stage_case_finish(&c);
+    stage_case_finish(&r);
+    assert_true(failing_each(verify_once, (void *)&p) > 200);
+    stage_case_end(&c);
+    stage_case_end(&r);
+    free(d);
+}
+
 /* Nothing that a stage could judge is no pass. */
 static void test_nothing(void **state)
 {
@@ -495,6 +540,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_other_arrays, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_broken_files, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_lying_manifest, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_refused_memory, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_nothing, context_set_up, context_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

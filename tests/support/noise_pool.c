@@ -97,9 +97,9 @@ noise_pool *noise_pool_made_up(noise_kind kind, int side)
     noise_pool *pool = pool_of(side);
     for (size_t i = 0; i < (size_t)side * (size_t)side; i++) {
         assay_random random = assay_random_start(99, ASSAY_STAGE_TEST, i, (uint64_t)kind);
-        const double x = (double)(i % (size_t)side), y = (double)(i / (size_t)side);
+        const int    x = (int)(i % (size_t)side), y = (int)(i / (size_t)side);
         const double light  = 1.0 / (1.0 + 0.05 * (x + 2.0 * y));
-        const double spread = i % 5 == 0 ? 0.8 : 0.2;
+        const double spread = i % 5 == (kind == NOISE_ELSEWHERE ? 2 : 0) ? 0.8 : 0.2;
         for (size_t s = 0; s < NOISE_POOL_SAMPLES; s++) {
             const double n = normal(&random);
             double       v = 1.0 + spread * n;
@@ -140,6 +140,27 @@ noise_pool *noise_pool_batches(const noise_pool *pool, int batch)
 }
 _Static_assert(NOISE_POOL_SAMPLES == 1 << 10, "ten bits choose a sample");
 
+static double mean_of_pixel(const noise_pool *pool, size_t pixel, int channel)
+{
+    double sum = 0.0;
+    for (size_t s = 0; s < NOISE_POOL_SAMPLES; s++) {
+        sum += sample_of(pool, pixel, s)[channel];
+    }
+    return sum / NOISE_POOL_SAMPLES;
+}
+
+void noise_pool_match(noise_pool *pool, const noise_pool *other)
+{
+    for (size_t i = 0; i < (size_t)pool->side * (size_t)pool->side; i++) {
+        for (int c = 0; c < 3; c++) {
+            const double shift = mean_of_pixel(other, i, c) - mean_of_pixel(pool, i, c);
+            for (size_t s = 0; s < NOISE_POOL_SAMPLES; s++) {
+                sample_of(pool, i, s)[c] += (float)shift;
+            }
+        }
+    }
+}
+
 /* ---- images ---- */
 
 typedef struct {
@@ -152,10 +173,11 @@ static double mean_of_pool(const noise_pool *pool)
 {
     double       sum   = 0.0;
     const size_t count = (size_t)pool->side * (size_t)pool->side * NOISE_POOL_SAMPLES * 3;
+    const size_t taken = count / 64;
     for (size_t i = 0; i < count; i += 64) {
         sum += pool->values[i];
     }
-    return sum / (double)(count / 64);
+    return sum / (double)taken;
 }
 
 static void spoil(const drawing *d, size_t pixel, double v[3])
@@ -213,31 +235,79 @@ static estimate draw_pixel(const drawing *d, size_t pixel, int samples, uint64_t
     return e;
 }
 
-assay_image *noise_pool_draw(assay_context *context, const noise_pool *pool, int samples,
-                             uint64_t number, noise_defect defect)
+static assay_image *create(assay_context *context, int side, int samples, assay_channel channel[7])
 {
     static const char *const NAMES[] = {"R",          "G",          "B",          "Variance.R",
                                         "Variance.G", "Variance.B", "SampleCount"};
-    const drawing            d       = {pool, defect, 10.0 * mean_of_pool(pool)};
     assay_image             *image   = NULL;
-    assay_channel            channel[7];
-    bool ok = assay_image_create(context, pool->side, pool->side, &image) == ASSAY_OK;
+    bool                     ok      = assay_image_create(context, side, side, &image) == ASSAY_OK;
     for (int c = 0; ok && c < 7; c++) {
         ok = assay_image_add_channel(image, NAMES[c],
                                      c < 6 ? ASSAY_CHANNEL_FLOAT : ASSAY_CHANNEL_UINT,
                                      &channel[c]) == ASSAY_OK;
     }
-    for (size_t i = 0; ok && i < (size_t)pool->side * (size_t)pool->side; i++) {
-        const estimate e = draw_pixel(&d, i, samples, number);
-        for (int c = 0; c < 3; c++) {
-            channel[c].data.f32[i]     = (float)e.mean[c];
-            channel[3 + c].data.f32[i] = (float)e.variance[c];
-        }
-        channel[6].data.u32[i] = (uint32_t)samples;
-    }
     if (!ok) {
         assay_image_destroy(image);
         return NULL;
     }
+    for (int i = 0; i < side * side; i++) {
+        channel[6].data.u32[i] = (uint32_t)samples;
+    }
     return image;
+}
+
+static void store(assay_channel channel[7], size_t pixel, const estimate *e)
+{
+    for (int c = 0; c < 3; c++) {
+        channel[c].data.f32[pixel]     = (float)e->mean[c];
+        channel[3 + c].data.f32[pixel] = (float)e->variance[c];
+    }
+}
+
+assay_image *noise_pool_draw(assay_context *context, const noise_pool *pool, int samples,
+                             uint64_t number, noise_defect defect)
+{
+    const drawing d = {pool, defect, 10.0 * mean_of_pool(pool)};
+    assay_channel channel[7];
+    assay_image  *image = create(context, pool->side, samples, channel);
+    for (size_t i = 0; image && i < (size_t)pool->side * (size_t)pool->side; i++) {
+        const estimate e = draw_pixel(&d, i, samples, number);
+        store(channel, i, &e);
+    }
+    return image;
+}
+
+assay_image *noise_pool_exact(assay_context *context, const noise_pool *pool, int samples)
+{
+    assay_channel channel[7];
+    assay_image  *image = create(context, pool->side, samples, channel);
+    for (size_t i = 0; image && i < (size_t)pool->side * (size_t)pool->side; i++) {
+        estimate e = {{0}, {0}};
+        for (int c = 0; c < 3; c++) {
+            e.mean[c] = mean_of_pixel(pool, i, c);
+            for (size_t s = 0; s < NOISE_POOL_SAMPLES; s++) {
+                const double delta = sample_of(pool, i, s)[c] - e.mean[c];
+                e.variance[c] += delta * delta / NOISE_POOL_SAMPLES / samples;
+            }
+        }
+        store(channel, i, &e);
+    }
+    return image;
+}
+
+void noise_pool_drop_variance(assay_image *image)
+{
+    static const char *const NAMES[] = {"Variance.R", "Variance.G", "Variance.B", "SampleCount"};
+    const int                pixels  = assay_image_width(image) * assay_image_height(image);
+    assay_channel            channel;
+    for (int c = 0; c < 4; c++) {
+        require(assay_image_find_channel(image, NAMES[c], &channel), NAMES[c]);
+        for (int i = 0; i < pixels; i++) {
+            if (c < 3) {
+                channel.data.f32[i] = 0.0F;
+            } else {
+                channel.data.u32[i] = 1;
+            }
+        }
+    }
 }

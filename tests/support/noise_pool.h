@@ -18,7 +18,8 @@ typedef struct {
 } noise_pool;
 
 typedef enum {
-    NOISE_GAUSS,     /* each pixel normal, with its own deviation                    */
+    NOISE_GAUSS,     /* each pixel normal, every fifth column with a large deviation */
+    NOISE_ELSEWHERE, /* likewise, but in other columns                               */
     NOISE_LOGNORMAL, /* log-normal with a deviation of 1.5: skewed                   */
     NOISE_RARE,      /* one sample in 300 is some 200 times as bright as the others  */
     NOISE_KINDS
@@ -45,11 +46,20 @@ noise_pool *noise_pool_render(assay_context *context, assay_scene *scene, int si
 noise_pool *noise_pool_made_up(noise_kind kind, int side);
 /* Each sample the mean of `batch` of the other pool's: as if each stood for so many. */
 noise_pool *noise_pool_batches(const noise_pool *pool, int batch);
-void        noise_pool_free(noise_pool *pool);
+/* Shifts samples so that each pixel's mean becomes that of the other pool: another estimator of the
+ * same light. */
+void noise_pool_match(noise_pool *pool, const noise_pool *other);
+void noise_pool_free(noise_pool *pool);
 
 /* An image of `samples` samples a pixel; number tells images of one pool apart.  NULL without
  * memory. */
 assay_image *noise_pool_draw(assay_context *context, const noise_pool *pool, int samples,
                              uint64_t number, noise_defect defect);
+
+/* Takes an image's variance away: 0, of a single sample. */
+void noise_pool_drop_variance(assay_image *image);
+
+/* The pool's very means, with the variances of `samples` samples. */
+assay_image *noise_pool_exact(assay_context *context, const noise_pool *pool, int samples);
 
 #endif

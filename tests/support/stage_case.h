@@ -38,7 +38,8 @@ typedef struct {
     assay_random random;
 } few_digits;
 
-/* To the nearest number of so many digits, ties to even. */
+/* To the nearest number of so many digits, ties to even.  (Not by a cast to float and back: gcc 12
+ * leaves that out where it does two of them at once.) */
 double few(const few_digits *f, double x);
 /* The sum of terms that have so few digits, in an order of chance: one by one, or in halves.
  * Terms are shuffled. */
