@@ -76,7 +76,7 @@ refuses "detect with allow" 2 "--detect goes with" verify "$folder/same.exr" $tr
     --detect 0.1
 for bad in "--level 0" "--level 0.5" "--level x" "--correction bonferroni" "--tile 3" "--tile 257" \
     "--allow 0" "--allow-absolute -1" "--detect 0" "--detect-tile nan" "--samples 0" \
-    "--reference-samples 0" "--precision double" "--threads -1"; do
+    "--reference-samples 0" "--precision quad" "--threads -1"; do
     refuses "$bad" 2 "${bad%% *}" verify "$folder/same.exr" $truth $bad
 done
 refuses "a channel twice" 2 "R is named twice" verify "$folder/same.exr" $truth --channels R,R
