@@ -14,8 +14,9 @@ SAN     ?=
 
 # What `make deps` installs (Debian 12).
 DEPS_BUILD := gcc g++ make libembree-dev libopenexr-dev libtinygltf-dev libsleef-dev \
-              librandom123-dev libpng-dev libjpeg-dev libcjson-dev libmd-dev
-DEPS_TEST  := libcmocka-dev clang python3-numpy
+              librandom123-dev libpng-dev zlib1g-dev libjpeg-dev libcjson-dev \
+              libmd-dev
+DEPS_TEST  := libcmocka-dev clang chromium python3-numpy
 DEPS_LINT  := clang-format clang-tidy cppcheck
 DEPS_REF   := libflint-arb-dev libflint-dev libmpfr-dev
 
@@ -26,7 +27,7 @@ override CFLAGS += -std=c11 $(OPT) $(WARN) -Wstrict-prototypes -Wmissing-prototy
             -fvisibility=hidden -fPIC -pthread $(SAN)
 override CXXFLAGS += -std=c++17 $(OPT) $(WARN) -ffp-contract=off -fvisibility=hidden -fPIC $(SAN)
 override LDFLAGS += -pthread $(SAN)
-override LDLIBS += -lembree3 -lOpenEXRCore -ltinygltf -lsleef -lpng -ljpeg -lcjson -lmd -lm -lstdc++
+override LDLIBS += -lembree3 -lOpenEXRCore -ltinygltf -lsleef -lpng -lz -ljpeg -lcjson -lmd -lm -lstdc++
 
 LIB_C   := $(filter-out src/cli/%,$(wildcard src/*/*.c src/*/*/*.c))
 LIB_CXX := $(wildcard src/*/*.cpp)
@@ -36,7 +37,8 @@ BENCH_C := $(wildcard tests/bench/*.c)
 TABLE_C := $(wildcard tests/tables/*.c)
 HELP_C  := $(wildcard tests/support/*.c)
 TEST_C  := $(wildcard tests/*/test_*.c)
-LIB_O   := $(LIB_C:%.c=$(BUILD)/%.o) $(LIB_CXX:%.cpp=$(BUILD)/%.o)
+PAGE    := $(wildcard src/oracle/report/*)
+LIB_O   := $(LIB_C:%.c=$(BUILD)/%.o) $(LIB_CXX:%.cpp=$(BUILD)/%.o) $(BUILD)/report_page.o
 CLI_O   := $(CLI_C:%.c=$(BUILD)/%.o)
 GEN_O   := $(GEN_C:%.c=$(BUILD)/%.o)
 HELP_O  := $(HELP_C:%.c=$(BUILD)/%.o)
@@ -46,9 +48,11 @@ BENCHES := $(BENCH_C:%.c=$(BUILD)/%)
 TABLES  := $(TABLE_C:%.c=$(BUILD)/%)
 OURS    := $(wildcard include/assay/*.h src/*/*.[ch] src/*/*/*.[ch] src/*/*.cpp scenes/gen/*.[ch] \
              refdata/gen/*.[ch] tests/*/*.[ch])
+TOOL_C  := $(wildcard tests/golden/golden_*.c)
+GOLDEN_TOOL := $(BUILD)/tests/golden/golden_arrays
 
-.PHONY: all help deps deps-test demo test install uninstall scenes ref ref-update figures layers \
-        format lint bench tables mutants check-sanitize check-arm64 fuzz clean
+.PHONY: all help deps deps-test demo test install uninstall scenes ref ref-update golden \
+        golden-check figures layers format lint bench tables mutants check-sanitize check-arm64 fuzz clean
 all: $(BUILD)/assay ## build the command
 
 help: ## list the targets
@@ -62,6 +66,13 @@ $(BUILD)/%.o: %.c
 $(BUILD)/%.o: %.cpp
 	@mkdir -p $(@D)
 	$(CXX) $(CPPFLAGS) $(CXXFLAGS) -MMD -MP -c $< -o $@
+
+$(BUILD)/report_page.c: $(PAGE)
+	@mkdir -p $(@D)
+	src/oracle/report/embed.sh > $@.tmp && mv $@.tmp $@
+
+$(BUILD)/report_page.o: $(BUILD)/report_page.c
+	$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@
 
 $(BUILD)/libassay.a: $(LIB_O)
 	@rm -f $@
@@ -99,21 +110,49 @@ MUTANT_ENV = BUILD=$(BUILD) \
    MUTANT_LIBS="$(HELP_O) $(filter-out %/main.o,$(GEN_O)) $(BUILD)/libassay.a -lcmocka $(LDLIBS)"
 
 DEMO := build/demo
-demo: deps ## build, render our Cornell box, write EXR and PNG
+demo: deps ## render our Cornell box two ways, verify one against the other, write a report
 	@$(MAKE) --no-print-directory -s -j$$(nproc) all
-	@mkdir -p $(DEMO)
-	@$(BUILD)/assay render scenes/cornell-box/cornell-box.gltf --method path --size 400x400 \
-	   --spp 64 --exposure 1 -o $(DEMO)/cornell-box.exr --png $(DEMO)/cornell-box.png \
-	   --stats $(DEMO)/cornell-box.json
-	@echo "The Cornell box, path traced with 64 samples a pixel and all bounces:"
+	@rm -rf $(DEMO); mkdir -p $(DEMO)/cache
+	@set -e; draw() { $(BUILD)/assay render scenes/cornell-box/cornell-box.gltf --size 256x256 \
+	     --layers color,gbuffer "$$@"; }; \
+	 draw --method path --spp 64 -o $(DEMO)/cornell-box.exr --stats $(DEMO)/cornell-box.json \
+	   --png $(DEMO)/cornell-box.png --exposure 1; \
+	 for n in 4 16; do draw --method path --spp $$n --seed $$n -o $(DEMO)/path-$$n.exr \
+	   --stats $(DEMO)/path-$$n.json; done; \
+	 draw --method irradiance-cache --spp 16 --a 0.25 --theta-strata 10 --phi-strata 32 \
+	   --dump $(DEMO)/cache/irradiance-cache -o $(DEMO)/cache/irradiance-cache.exr \
+	   --stats $(DEMO)/cache/irradiance-cache.json
+	@echo "Is the cache's image the path tracer's, within 10 percent in every 64 x 64 pixels?"
+	@$(BUILD)/assay verify $(DEMO)/cache/irradiance-cache.exr --reference $(DEMO)/cornell-box.exr \
+	   --allow 0.1 --tile 64 --json $(DEMO)/cache/irradiance-cache.verdict.json || [ $$? -le 2 ]
+	@$(BUILD)/assay report $(DEMO)/cache/irradiance-cache $(DEMO)/path-4.exr $(DEMO)/path-16.exr \
+	   --reference $(DEMO)/cornell-box.exr -o $(DEMO)/report.html
 	@echo "  $(DEMO)/cornell-box.png   to look at"
-	@echo "  $(DEMO)/cornell-box.exr   linear radiance, variance, G-buffer, irradiance: all layers"
-	@echo "  $(DEMO)/cornell-box.json  rays, seconds, memory"
+	@echo "  $(DEMO)/cornell-box.exr   linear radiance, variance, G-buffer: all layers"
+	@echo "  $(DEMO)/cache             the same by irradiance caching, with its records"
+	@echo "  $(DEMO)/report.html       both side by side, where they differ, and why: open it in a browser"
 	@echo "Next: $(BUILD)/assay render --help"
 
+# A backend that shares nothing with assay but a format: without its headers and its library.
+BACKEND_C       := $(wildcard tests/backends/*.c)
+BACKEND_O       := $(BACKEND_C:tests/backends/%.c=$(BUILD)/backend/%.o)
+BACKEND_COMPILE := $(CC) -D_GNU_SOURCE -std=c11 $(OPT) $(WARN) -Wstrict-prototypes \
+                   -Wmissing-prototypes -ffp-contract=off $(SAN)
+BACKEND_LIBS    := -lcjson -lmd -lOpenEXRCore -lm
+BACKEND_ENV     = BACKEND_COMPILE="$(BACKEND_COMPILE)" BACKEND_LIBS="$(BACKEND_LIBS)" \
+                  BACKEND_OBJECTS=$(BUILD)/backend
+
+$(BUILD)/backend/%.o: tests/backends/%.c
+	@mkdir -p $(@D)
+	$(BACKEND_COMPILE) -MMD -MP -c $< -o $@
+
+$(BUILD)/backend/backend: $(BACKEND_O)
+	$(BACKEND_COMPILE) $^ $(BACKEND_LIBS) -o $@
+
 test: deps-test ## build and run all tests
-	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(TESTS) $(BUILD)/make_scenes
-	@$(MUTANT_ENV) ASSAY_BIN=$(BUILD)/assay tests/tools/run.sh $(TEST_SCRIPTS) $(TESTS)
+	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(TESTS) $(BUILD)/make_scenes \
+	   $(BUILD)/backend/backend $(GOLDEN_TOOL)
+	@$(MUTANT_ENV) $(BACKEND_ENV) ASSAY_BIN=$(BUILD)/assay tests/tools/run.sh $(TEST_SCRIPTS) $(TESTS)
 
 MUTANT_LISTS = tests/mutants/*.txt
 mutants: deps-test ## break the source on purpose, also where `make test` does not
@@ -180,6 +219,17 @@ ref-update: ## make the certified tables again and put them in place
 	@$(MAKE) --no-print-directory -s $(REF_TOOLS)
 	@refdata/gen/make_tables.sh update $(REF_TOOLS)
 
+# ---- golden images ----
+GOLDEN_ENV = BUILD=$(BUILD) ASSAY_BIN=$(BUILD)/assay
+golden-check: deps-test ## render the golden images again and compare every bit
+	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(GOLDEN_TOOL)
+	@$(GOLDEN_ENV) tests/tools/golden.sh check
+
+golden: export REASON := $(value REASON)
+golden: deps-test ## take what renders differently now: make golden REASON="why"
+	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(GOLDEN_TOOL)
+	@$(GOLDEN_ENV) tests/tools/golden.sh renew
+
 # ---- pictures ----
 FIGURES := docs/images
 figures: all ## draw the pictures of docs/methods again
@@ -234,10 +284,10 @@ CPPCHECK := cppcheck --quiet --error-exitcode=1 --enable=warning,performance,por
 lint: layers ## clang-format, clang-tidy, cppcheck: all clean
 	@$(call install_missing,$(DEPS_LINT))
 	clang-format --dry-run -Werror $(OURS)
-	clang-tidy --quiet $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) -- $(CPPFLAGS) -std=c11 \
+	clang-tidy --quiet $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) $(TOOL_C) -- $(CPPFLAGS) -std=c11 \
 	  2>&1 | $(ONLY_FINDINGS)
 	clang-tidy --quiet $(LIB_CXX) -- $(CPPFLAGS) -std=c++17 2>&1 | $(ONLY_FINDINGS)
-	$(CPPCHECK) --std=c11 $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) $(TEST_C) $(BENCH_C) $(TABLE_C)
+	$(CPPCHECK) --std=c11 $(LIB_C) $(CLI_C) $(GEN_C) $(HELP_C) $(TOOL_C) $(TEST_C) $(BENCH_C) $(TABLE_C)
 	$(CPPCHECK) --std=c++17 --suppress=passedByValue $(LIB_CXX)
 
 # ---- installing ----
@@ -265,5 +315,6 @@ clean: ## remove everything that was built
 	rm -rf build
 
 -include $(wildcard $(REF_BUILD)/*.d)
--include $(LIB_O:.o=.d) $(CLI_O:.o=.d) $(GEN_O:.o=.d) $(HELP_O:.o=.d) $(TESTS:=.d) $(BENCHES:=.d) $(TABLES:=.d)
+-include $(LIB_O:.o=.d) $(CLI_O:.o=.d) $(GEN_O:.o=.d) $(HELP_O:.o=.d) $(TESTS:=.d) $(BENCHES:=.d) $(TABLES:=.d) \
+         $(BACKEND_O:.o=.d) $(GOLDEN_TOOL).d
 .SECONDARY:

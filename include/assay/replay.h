@@ -56,7 +56,10 @@ ASSAY_API assay_status assay_replay(assay_context *context, const assay_replay_o
  * adds a finding for each array.  Errors: ARGUMENT (candidate and reference are of other scenes,
  * parameters, cameras: the message names what), FORMAT (an array that the reference lacks, of
  * another shape, dtype or unit; a broken file), DOMAIN (NaN), and the others of assay_replay; the
- * verdict is then worthless.  Arrays that no stage judges stand in its setting "not judged". */
+ * verdict is then worthless.  Arrays that no stage judges stand in its setting "not judged".
+ *
+ * reference NULL: nothing is said of the inputs themselves; for stages that are tested alone, on
+ * inputs that no render made. */
 ASSAY_API assay_status assay_verify_bundle(assay_context *context, const char *candidate,
                                            const char *reference, const assay_scene *scene,
                                            assay_precision precision, assay_verdict *verdict);

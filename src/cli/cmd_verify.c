@@ -47,7 +47,8 @@ enum {
     OPT_TIME
 };
 static const cli_option OPTIONS[] = {
-    {"reference", 0, "REF.exr", "what is right: an image with variances; required"},
+    {"reference", 0, "REF",
+     "what is right: an image with variances, or the bundle that was begun with"},
     {"candidate", 0, "C.exr", "a run of the candidate; several differ in their seed alone"},
     {"channels", 0, "C,...", "channels to compare, as in R,G,B (default: all of light in both)"},
     {"level", 0, "P", "of a false alarm, over all tests together (default 0.01)"},
@@ -195,7 +196,7 @@ static const char *check_together(const verify_request *r)
     if (r->count == 0) {
         return "a candidate is missing";
     }
-    if (!r->reference) {
+    if (!r->reference && !cli_is_bundle(r->candidates[0])) {
         return "--reference is missing";
     }
     const char *problem = cli_bundle_check(&r->bundles, r->count, r->candidates[0]);
@@ -214,7 +215,7 @@ static int check_output(const verify_request *r, const char *path)
     if (!path || strcmp(path, "-") == 0) {
         return 0;
     }
-    int code = cli_check_not_input("verify", path, r->reference);
+    int code = r->reference ? cli_check_not_input("verify", path, r->reference) : 0;
     for (int k = 0; code == 0 && k < r->count; k++) {
         code = cli_check_not_input("verify", path, r->candidates[k]);
     }
@@ -310,7 +311,7 @@ int cli_verify(int count, char **argv)
     }
     if (request.help) {
         printf("usage: assay verify CANDIDATE.exr [MORE.exr ...] --reference REF.exr [options]\n"
-               "       assay verify BUNDLE --reference BUNDLE [--scene F.gltf] [--precision P]\n"
+               "       assay verify BUNDLE [--reference BUNDLE] [--scene F.gltf] [--precision P]\n"
                "Is it the same light? Several candidates are runs of one renderer.\n"
                "Of a bundle: which stage is the first that does not follow from its inputs?\n"
                "Exit code 0: passes; 1: fails; 2: cannot tell, or bad input.\n");

@@ -46,6 +46,7 @@ int cli_render(int count, char **argv);
 int cli_scene(int count, char **argv);
 int cli_methods(int count, char **argv);
 int cli_diff(int count, char **argv);
+int cli_report(int count, char **argv);
 int cli_replay(int count, char **argv);
 int cli_basis(int count, char **argv);
 int cli_verify(int count, char **argv);

@@ -18,6 +18,7 @@ static const struct {
     {"diff", cli_diff, "compare two OpenEXR images"},
     {"replay", cli_replay, "run one stage on given arrays: what should have come out of yours?"},
     {"verify", cli_verify, "say whether images are the same light as a reference, and how sure"},
+    {"report", cli_report, "one HTML page: pictures, differences, stages, records, parameters"},
     {"basis", cli_basis, "SH, HSH and other bases: values, projections, rotations, pictures"},
 };
 
@@ -59,7 +60,7 @@ static int run_command(int argc, char **argv)
         }
     }
     cli_complain(name, "unknown command or option; the commands are render, scene, methods, diff, "
-                       "verify, replay, basis");
+                       "verify, replay, report, basis");
     return CLI_EXIT_USAGE;
 }
 

@@ -23,7 +23,8 @@ assay_status cli_verify_bundle(assay_context *context, const char *candidate, co
 {
     assay_scene   *scene   = NULL;
     assay_verdict *verdict = NULL;
-    assay_status   status  = assay_verdict_create(context, candidate, reference, &verdict);
+    assay_status   status  = assay_verdict_create(context, candidate,
+                                               reference ? reference : "its own inputs", &verdict);
     if (status == ASSAY_OK && request->scene) {
         status = assay_scene_load(context, request->scene, &request->options.options, &scene);
         status = status ? status : assay_scene_set_time(scene, request->time);

@@ -18,6 +18,7 @@ bool cli_is_bundle(const char *path);
  * wrong. */
 const char *cli_bundle_check(const cli_bundle_request *request, int count, const char *candidate);
 
+/* reference NULL: stages are judged on the inputs of the candidate alone. */
 assay_status cli_verify_bundle(assay_context *context, const char *candidate, const char *reference,
                                const cli_bundle_request *request, assay_precision precision,
                                assay_verdict **verdict_out);

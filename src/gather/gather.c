@@ -98,9 +98,8 @@ static assay_status serve(void *user, uint64_t chunk, int worker)
 {
     const gather_job *job   = user;
     const int         first = job->first + (int)chunk * CHUNK;
+    assay_gather_hit  own   = {0};
     for (int i = first; i < first + CHUNK && i < job->end; i++) {
-        assay_gather_hit own;
-        own.hit               = false;
         assay_gather_hit *hit = job->hits ? &job->hits[i - job->first] : &own;
         if (job->site) {
             trace(job, i, worker, hit);

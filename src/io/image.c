@@ -9,7 +9,7 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/hash.h"
-#include "io/compare_channels.h"
+#include "io/image_access.h"
 #include "io/image_data.h"
 #include "io/image_decode.h"
 #include "io/read_file.h"
@@ -64,6 +64,17 @@ void assay_image_destroy(assay_image *image)
 }
 
 assay_context *assay_image_context(const assay_image *image) { return image->context; }
+
+assay_status assay_images_check_sizes(const assay_image *a, const assay_image *b)
+{
+    if (assay_image_width(a) == assay_image_width(b) &&
+        assay_image_height(a) == assay_image_height(b)) {
+        return ASSAY_OK;
+    }
+    return assay_fail(assay_image_context(a), ASSAY_ERR_ARGUMENT,
+                      "the images differ in size: %d x %d and %d x %d pixels", assay_image_width(a),
+                      assay_image_height(a), assay_image_width(b), assay_image_height(b));
+}
 
 int assay_image_width(const assay_image *image) { return image->width; }
 

@@ -28,17 +28,20 @@ typedef struct {
     char               message[160];
 } png_job;
 
-uint8_t assay_srgb_encode8(double linear)
+double assay_srgb_encode(double linear)
 {
     if (!(linear > 0.0)) {
-        return 0;
+        return 0.0;
     }
     if (linear >= 1.0) {
-        return 255;
+        return 1.0;
     }
-    const double c =
-        linear <= 0.0031308 ? 12.92 * linear : 1.055 * assay_pow(linear, 1.0 / 2.4) - 0.055;
-    return (uint8_t)(c * 255.0 + 0.5);
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * assay_pow(linear, 1.0 / 2.4) - 0.055;
+}
+
+uint8_t assay_srgb_encode8(double linear)
+{
+    return (uint8_t)(assay_srgb_encode(linear) * 255.0 + 0.5);
 }
 
 static bool find_channels(const assay_image *image, const char *layer, assay_channel sources[3])

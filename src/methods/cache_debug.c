@@ -6,7 +6,7 @@
 #include "assay/image.h"
 #include "core/context.h"
 #include "core/numerics.h"
-#include "io/heat_map.h"
+#include "io/heat_color.h"
 
 /* In pixels: of a record's dot, and of a zone's border. */
 static const double DOT_RADIUS = 1.5, BORDER_WIDTH = 1.0;

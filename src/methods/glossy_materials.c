@@ -1,6 +1,7 @@
 /* glossy_materials.c - the choice between coefficients and paths.
  *
  * Invariant: the choice is the material's, not the point's, so that no seam runs across a surface.
+ * Materials with the same lobe share grids; the last of them by number releases these.
  *
  * The angle of 45 degrees is the mean angle of directions drawn by their cosine; beyond it lobes
  * meet the horizon, where every basis errs more, and grazing views are rare. */
@@ -43,58 +44,91 @@ static assay_status measure(assay_context *context, const assay_material_grid_se
     return status;
 }
 
-static assay_status make_material(assay_context *context, const assay_material *m,
-                                  const assay_material_grid_settings *settings, double accuracy,
+typedef struct {
+    assay_context                      *context;
+    const char                         *method;
+    const assay_scene                  *scene;
+    const assay_material_grid_settings *settings;
+    double                              accuracy;
+    glossy_materials                   *made;
+} maker;
+
+/* The grids of a material with the same lobe, or NULL where none has been made. */
+static const assay_material_grids *made_before(const maker *m, const assay_material *material)
+{
+    for (uint32_t i = 0; i < m->made->count; i++) {
+        const assay_material_grids *grids = &m->made->grids[i];
+        if (grids->slope && assay_material_grids_same(&m->scene->materials[i], material)) {
+            return grids;
+        }
+    }
+    return NULL;
+}
+
+static assay_status make_grids(const maker *m, const assay_material *material,
+                               assay_material_grids *grids_out)
+{
+    const assay_material_grids *before = made_before(m, material);
+    if (before) {
+        *grids_out = *before;
+        return ASSAY_OK;
+    }
+    return assay_material_grids_create(m->context, m->settings, material, grids_out);
+}
+
+static assay_status make_material(const maker *m, const assay_material *material,
                                   assay_material_grids *grids)
 {
-    const char *name    = m->name ? m->name : "";
-    const char *problem = assay_material_grids_problem(m);
+    const char *name    = material->name ? material->name : "";
+    const char *problem = assay_material_grids_problem(material);
     if (problem) {
-        assay_inform(context, ASSAY_LOG_INFO,
-                     "radiance-cache: material '%s' %s: its glossy light comes from paths", name,
+        assay_inform(m->context, ASSAY_LOG_INFO,
+                     "%s: material '%s' %s: its glossy light comes from paths", m->method, name,
                      problem);
         return ASSAY_OK;
     }
     double       share  = 0.0;
-    assay_status status = measure(context, settings, m, &share);
+    assay_status status = measure(m->context, m->settings, material, &share);
     if (status != ASSAY_OK) {
         return status;
     }
-    assay_inform(context, ASSAY_LOG_INFO,
-                 "radiance-cache: order %d holds %.4f of the lobe of material '%s': %s",
-                 assay_basis_order(settings->basis), share, name,
-                 share >= accuracy ? "within reach" : "its glossy light comes from paths");
-    return share >= accuracy ? assay_material_grids_create(context, settings, m, grids) : ASSAY_OK;
+    assay_inform(m->context, ASSAY_LOG_INFO,
+                 "%s: order %d holds %.4f of the lobe of material '%s': %s", m->method,
+                 assay_basis_order(m->settings->basis), share, name,
+                 share >= m->accuracy ? "within reach" : "its glossy light comes from paths");
+    return share >= m->accuracy ? make_grids(m, material, grids) : ASSAY_OK;
 }
 
 /* seen: a flag a material, all false. */
-static assay_status make_all(assay_context *context, const assay_scene *scene,
-                             const assay_material_grid_settings *settings, double accuracy,
-                             bool *seen, glossy_materials *made)
+static assay_status make_all(const maker *m, bool *seen)
 {
-    assay_status status = ASSAY_OK;
+    const assay_scene *scene  = m->scene;
+    assay_status       status = ASSAY_OK;
     for (uint32_t i = 0; i < scene->shape_count && status == ASSAY_OK; i++) {
         const uint32_t        index    = scene->shapes[i].material;
         const assay_material *material = &scene->materials[index];
+        assay_material_grids *grids    = &m->made->grids[index];
         if (!seen[index] && is_glossy(material)) {
-            status    = make_material(context, material, settings, accuracy, &made->grids[index]);
-            made->any = made->any || made->grids[index].slope;
+            status       = make_material(m, material, grids);
+            m->made->any = m->made->any || grids->slope;
         }
         seen[index] = true;
     }
     return status;
 }
 
-assay_status glossy_materials_make(assay_context *context, const assay_scene *scene,
+assay_status glossy_materials_make(assay_context *context, const char *method,
+                                   const assay_scene                  *scene,
                                    const assay_material_grid_settings *settings, double accuracy,
                                    glossy_materials *materials_out)
 {
     glossy_materials made = {.context = context, .count = scene->material_count};
+    const maker      m    = {context, method, scene, settings, accuracy, &made};
     made.grids            = assay_allocate(context, scene->material_count, sizeof *made.grids);
     bool        *seen     = assay_allocate(context, scene->material_count, sizeof *seen);
     assay_status status   = ASSAY_ERR_MEMORY;
     if (made.grids && seen) {
-        status = make_all(context, scene, settings, accuracy, seen, &made);
+        status = make_all(&m, seen);
     } else {
         assay_fail_memory(context, "BRDFs in harmonics");
     }
@@ -107,10 +141,23 @@ assay_status glossy_materials_make(assay_context *context, const assay_scene *sc
     return ASSAY_OK;
 }
 
+/* Whether a material of a higher number has them, too. */
+static bool goes_on(const glossy_materials *materials, uint32_t number)
+{
+    for (uint32_t i = number + 1; i < materials->count; i++) {
+        if (materials->grids[i].slope == materials->grids[number].slope) {
+            return true;
+        }
+    }
+    return false;
+}
+
 void glossy_materials_release(glossy_materials *materials)
 {
     for (uint32_t i = 0; materials->grids && i < materials->count; i++) {
-        assay_material_grids_release(&materials->grids[i]);
+        if (materials->grids[i].slope && !goes_on(materials, i)) {
+            assay_material_grids_release(&materials->grids[i]);
+        }
     }
     if (materials->context) {
         assay_release(materials->context, materials->grids);

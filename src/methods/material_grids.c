@@ -93,6 +93,17 @@ static assay_bsdf bsdf_with(const assay_material *material, double base)
     return assay_vertex_bsdf(material, &at);
 }
 
+static bool same_color(assay_rgb a, assay_rgb b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
+
+bool assay_material_grids_same(const assay_material *a, const assay_material *b)
+{
+    const assay_bsdf x = bsdf_with(a, 0.0), y = bsdf_with(b, 0.0);
+    return x.model == y.model && x.metallic == y.metallic && x.roughness == y.roughness &&
+           x.ior == y.ior && x.specular_factor == y.specular_factor &&
+           same_color(x.specular_color, y.specular_color) && x.solid == y.solid &&
+           x.exponent == y.exponent && x.alpha_x == y.alpha_x && x.alpha_y == y.alpha_y;
+}
+
 static lobe_source source_of(const assay_material               *material,
                              const assay_material_grid_settings *settings)
 {

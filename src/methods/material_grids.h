@@ -33,6 +33,10 @@ assay_status assay_material_grids_check_work(assay_context *context, int side, i
  * is a perfect mirror), in words that follow its name: "transmits light". */
 const char *assay_material_grids_problem(const assay_material *material);
 
+/* Whether both materials, without such a problem, have the very same grids: they differ in base
+ * colour at most. */
+bool assay_material_grids_same(const assay_material *a, const assay_material *b);
+
 /* Of a material without such a problem.  Errors: MEMORY, CANCELLED. */
 assay_status assay_material_grids_create(assay_context                      *context,
                                          const assay_material_grid_settings *settings,

@@ -5,10 +5,12 @@
 
 #include "core/context.h"
 
-assay_status assay_radiance_params_read(assay_context *context, const assay_params *params,
+assay_status assay_radiance_params_read(assay_context *context, const char *method,
+                                        const assay_params    *params,
                                         assay_radiance_params *radiance_out)
 {
     const assay_radiance_params r = {
+        .method = method,
         .cache =
             {
                 .order = assay_params_int(params, "order"),
@@ -46,9 +48,9 @@ assay_status assay_radiance_params_materials(assay_context *context, const assay
     assay_status status = assay_basis_create(context, ASSAY_BASIS_HSH, radiance->cache.order,
                                              ASSAY_CONVENTION_THESIS, &basis);
     grid.basis          = basis;
-    status              = status
-                              ? status
-                              : glossy_materials_make(context, scene, &grid, radiance->accuracy, materials_out);
+    status              = status ? status
+                                 : glossy_materials_make(context, radiance->method, scene, &grid,
+                                                         radiance->accuracy, materials_out);
     assay_basis_destroy(basis);
     return status;
 }

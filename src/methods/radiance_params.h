@@ -38,14 +38,16 @@
 /* clang-format on */
 
 typedef struct {
-    assay_radiance_cache_settings cache; /* but its records, which assay_cache_params_read reads */
-    assay_material_grid_settings  grid;  /* without its basis */
+    const char                   *method; /* in whose name messages speak; borrowed */
+    assay_radiance_cache_settings cache;  /* but its records, which assay_cache_params_read reads */
+    assay_material_grid_settings  grid;   /* without its basis */
     double                        accuracy;
 } assay_radiance_params;
 
 /* What the rows above say; params have those of ASSAY_CACHE_PARAMS, too.  Errors: ARGUMENT (a grid
  * that takes hours; gradients that gathering does not have). */
-assay_status assay_radiance_params_read(assay_context *context, const assay_params *params,
+assay_status assay_radiance_params_read(assay_context *context, const char *method,
+                                        const assay_params    *params,
                                         assay_radiance_params *radiance_out);
 
 /* The lobes of the scene's materials in the basis of such a cache, which comes only where it is

@@ -11,6 +11,7 @@ assay_status bundle_match_making(assay_context *context, const assay_bundle_read
 
 /* Arrays: each is one of the reference's, in its unit, with as many columns, of a type that is
  * known, in a file that is what the manifest lists, without a NaN where the reference has none.
+ * reference NULL: of a known type, in such a file; what a stage reads it judges itself.
  * Errors: FORMAT, DOMAIN, and those of bundles. */
 assay_status bundle_match_arrays(assay_context *context, const assay_bundle_reader *candidate,
                                  const assay_bundle_reader *reference);

@@ -110,11 +110,12 @@ static assay_status project(stage_run *run, const assay_basis *basis)
     assay_status status = stage_unit_vectors(run, DIRECTION, 0, &d);
     status              = status ? status : stage_output_make(run, 0, 0, channels, count, &out);
     if (status == ASSAY_OK) {
-        variance = assay_allocate(run->context, channels * count, sizeof *variance);
-        status   = variance ? assay_basis_project_samples(basis, run->context, samples, d,
-                                                          run->in[PDF].values, run->in[VALUE].values,
-                                                          (int)channels, out->values, variance)
-                            : assay_fail_memory(run->context, "a projection");
+        out->unit = run->in[VALUE].unit;
+        variance  = assay_allocate(run->context, channels * count, sizeof *variance);
+        status    = variance ? assay_basis_project_samples(basis, run->context, samples, d,
+                                                           run->in[PDF].values, run->in[VALUE].values,
+                                                           (int)channels, out->values, variance)
+                             : assay_fail_memory(run->context, "a projection");
     }
     if (status == ASSAY_OK && run->bounded) {
         if (basis_bound_known(assay_basis_kind_of(basis))) {

@@ -92,10 +92,11 @@ static void add_head(assay_text_builder *text, const assay_verdict *verdict)
 {
     const size_t failed = count_kind(verdict, ASSAY_VERDICT_FAIL);
     const size_t unsure = count_kind(verdict, ASSAY_VERDICT_CANNOT_TELL);
+    const char  *shown  = assay_verdict_get(verdict, "shown");
     switch (assay_verdict_whole(verdict)) {
     case ASSAY_VERDICT_PASS:
-        assay_text_add(text, "PASS: %s against %s: no difference in %zu tests.", verdict->candidate,
-                       verdict->reference, verdict->count);
+        assay_text_add(text, "PASS: %s against %s: %s in %zu tests.", verdict->candidate,
+                       verdict->reference, shown ? shown : "no difference", verdict->count);
         break;
     case ASSAY_VERDICT_FAIL:
         assay_text_add(text, "FAIL: %s differs from %s in %zu of %zu tests", verdict->candidate,

@@ -10,6 +10,7 @@
 #include "oracle/bundle_match.h"
 #include "oracle/stage.h"
 #include "oracle/stage_meaning.h"
+#include "oracle/verify_inputs.h"
 
 typedef struct {
     assay_context       *context;
@@ -248,15 +249,11 @@ static assay_status tell_unjudged(const verification *v)
     char   text[1024] = "";
     size_t used       = 0;
     for (int i = 0; i < assay_bundle_count(v->candidate); i++) {
-        assay_bundle_entry entry  = {.name = NULL};
-        bool               judged = false;
+        assay_bundle_entry entry = {.name = NULL};
         if (assay_bundle_entry_at(v->candidate, i, &entry) != ASSAY_OK) {
             continue;
         }
-        for (int k = 0; k < assay_verdict_count(v->verdict) && !judged; k++) {
-            judged = strcmp(assay_verdict_at(v->verdict, k).array, entry.name) == 0;
-        }
-        if (!judged && used < sizeof text) {
+        if (!verify_is_judged(v->verdict, entry.name) && used < sizeof text) {
             used += (size_t)snprintf(text + used, sizeof text - used, "%s%s", used ? ", " : "",
                                      entry.name);
         }
@@ -275,6 +272,9 @@ static assay_status judge_stages(const verification *v)
             status = judge_stage(v, stage);
         }
     }
+    if (status == ASSAY_OK && v->reference) {
+        status = verify_inputs(v->candidate, v->reference, v->precision, v->verdict);
+    }
     return status ? status : tell_unjudged(v);
 }
 
@@ -285,10 +285,12 @@ assay_status assay_verify_bundle(assay_context *context, const char *candidate,
     verification v = {
         .context = context, .scene = scene, .precision = precision, .verdict = verdict};
     assay_status status = assay_bundle_open(context, candidate, &v.candidate);
-    status              = status ? status : assay_bundle_open(context, reference, &v.reference);
-    status              = status ? status : bundle_match_making(context, v.candidate, v.reference);
-    status              = status ? status : bundle_match_arrays(context, v.candidate, v.reference);
-    status              = status ? status : judge_stages(&v);
+    if (status == ASSAY_OK && reference) {
+        status = assay_bundle_open(context, reference, &v.reference);
+        status = status ? status : bundle_match_making(context, v.candidate, v.reference);
+    }
+    status = status ? status : bundle_match_arrays(context, v.candidate, v.reference);
+    status = status ? status : judge_stages(&v);
     assay_bundle_close(v.candidate);
     assay_bundle_close(v.reference);
     return status;

@@ -152,6 +152,9 @@ static assay_status describe(assay_verdict *verdict, int first, const assay_veri
                                         o->correction == ASSAY_CORRECTION_HOLM ? "holm" : "bh");
     status = status ? status
                     : assay_verdict_set(verdict, "candidate_noise", source_text(channels, count));
+    if (status == ASSAY_OK && (o->allow > 0.0 || o->allow_absolute > 0.0)) {
+        status = assay_verdict_set(verdict, "shown", "every region is within the allowance");
+    }
     if (status == ASSAY_OK && shared) {
         status = assay_verdict_set(
             verdict, "shared_seed",

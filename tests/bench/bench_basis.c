@@ -6,20 +6,13 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include "assay/assay.h"
+#include "bench/bench.h"
 
 enum { DIRECTIONS = 1024, ROUNDS = 15, ORDERS = 4 };
 
 static const double pi = 3.14159265358979323846;
-
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static double factorial(int n)
 {
@@ -97,9 +90,9 @@ static void measure(const assay_basis *basis, const assay_vec3 *directions, doub
     double best[WAY_COUNT] = {INFINITY, INFINITY, INFINITY};
     for (int round = 0; round < ROUNDS; round++) {
         for (int w = 0; w < WAY_COUNT; w++) {
-            const double start = seconds();
+            const double start = bench_seconds(CLOCK_MONOTONIC);
             run((way)w, basis, directions, values);
-            best[w] = fmin(best[w], (seconds() - start) / DIRECTIONS * 1e9);
+            best[w] = fmin(best[w], (bench_seconds(CLOCK_MONOTONIC) - start) / DIRECTIONS * 1e9);
         }
     }
     printf("%-4s order %2d  textbook %9.1f ns  single %8.1f ns (%5.1fx)  batch %8.1f ns (%5.1fx)\n",
@@ -134,7 +127,7 @@ static void measure_rotation(const assay_basis *sh)
     two[0] = 1.0;
     for (int round = 0; round < ROUNDS; round++) {
         for (int ours = 0; ours < 2; ours++) {
-            const double start = seconds();
+            const double start = bench_seconds(CLOCK_MONOTONIC);
             for (int i = 0; i < TURNS; i++) {
                 double *in = two + (size_t)(i & 1) * count, *out = two + (size_t)(~i & 1) * count;
                 if (!ours) {
@@ -143,7 +136,7 @@ static void measure_rotation(const assay_basis *sh)
                     exit(EXIT_FAILURE);
                 }
             }
-            best[ours] = fmin(best[ours], (seconds() - start) / TURNS);
+            best[ours] = fmin(best[ours], (bench_seconds(CLOCK_MONOTONIC) - start) / TURNS);
         }
     }
     printf("turning SH n = %2d   textbook %8.1f ns   ours %8.1f ns   ratio %5.1f\n",

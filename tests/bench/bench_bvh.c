@@ -12,10 +12,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 #include "assay/scene.h"
+#include "bench/bench.h"
 #include "core/numerics.h"
 #include "core/random.h"
 #include "math/frame.h"
@@ -44,24 +43,11 @@ typedef struct {
     bench_ray      *rays;
 } bench;
 
-static double thread_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void stop(const char *message)
-{
-    fprintf(stderr, "bench_bvh: %s\n", message);
-    exit(1);
-}
-
 static void *allocate(size_t count, size_t size)
 {
     void *memory = calloc(count, size);
     if (!memory) {
-        stop("out of memory");
+        bench_stop("out of memory");
     }
     return memory;
 }
@@ -139,11 +125,11 @@ static void measure(const bench *b, const char *kind, bool closest)
     for (int repeat = 0; repeat < REPEATS; repeat++) {
         for (int first = 0; first < RAYS; first += ROUND) {
             const bench_ray *rays = b->rays + first;
-            const double     t0   = thread_seconds();
+            const double     t0   = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
             found += run_ours(b, rays, closest);
-            const double t1 = thread_seconds();
+            const double t1 = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
             found += run_embree(b, rays, closest);
-            const double t2  = thread_seconds();
+            const double t2  = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
             ratios[rounds++] = (t2 - t1) / (t1 - t0);
             ours += t1 - t0;
             theirs += t2 - t1;
@@ -155,7 +141,7 @@ static void measure(const bench *b, const char *kind, bool closest)
            ratios[rounds / 2], ratios[rounds / 10], ratios[rounds * 9 / 10]);
     fflush(stdout);
     if (found == 0) {
-        stop("no ray met anything");
+        bench_stop("no ray met anything");
     }
     free(ratios);
 }
@@ -272,14 +258,14 @@ static void run_scene(assay_context *context, const char *name, const assay_tria
                       const assay_camera *camera, assay_vec3 light)
 {
     bench        b  = {.name = name, .triangles = *triangles};
-    const double t0 = thread_seconds();
+    const double t0 = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
     if (assay_bvh_create(context, triangles, &b.bvh) != ASSAY_OK) {
-        stop(assay_context_error(context));
+        bench_stop(assay_context_error(context));
     }
-    const double t1 = thread_seconds();
+    const double t1 = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
     b.rays          = allocate(RAYS, sizeof *b.rays);
     open_embree(&b, NULL);
-    const double t2 = thread_seconds();
+    const double t2 = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
     printf("%s: %u triangles; built in %.2f s, Embree's own in %.2f s; %.1f bytes a triangle\n",
            name, triangles->triangle_count, t1 - t0, t2 - t1,
            (double)assay_bvh_bytes(b.bvh) / triangles->triangle_count);
@@ -415,7 +401,7 @@ int main(int argc, char **argv)
 {
     assay_context *context = NULL;
     if (assay_context_create(NULL, &context) != ASSAY_OK) {
-        stop("cannot make a context");
+        bench_stop("cannot make a context");
     }
     printf("%-26s %-8s %-10s %7s %7s   %6s   %s\n", "", "Embree", "", "Mrays/s", "Embree", "ratio",
            "[10 %, 90 % of rounds]");
@@ -424,11 +410,8 @@ int main(int argc, char **argv)
         ok = run_file(context, argv[i]) && ok;
     }
     if (argc == 1) {
-        const char *shared = getenv("ASSAY_SHARED_SCENES");
-        char        path[4096];
-        snprintf(path, sizeof path, "%s/sponza_dabrovic/sponza_dabrovic_nolight.glb",
-                 shared ? shared : "../shared/scenes");
-        if (access(path, R_OK) == 0) {
+        char path[4096];
+        if (bench_find_scene(path, sizeof path, "sponza_dabrovic/sponza_dabrovic_nolight.glb")) {
             ok = run_file(context, path);
         }
         run_hall(context);

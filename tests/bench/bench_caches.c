@@ -12,10 +12,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 #include "assay/render.h"
+#include "bench/bench.h"
 #include "core/numerics.h"
 
 enum { SIDE = 256, CHANNELS = 3, REFERENCE_SPP = 128 };
@@ -41,21 +40,6 @@ static const view VIEWS[] = {
     {"Sponza, lower arcade", SPONZA, "lower_arcade", "inf", HALL, 60},
 };
 
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void require(assay_context *context, assay_status status)
-{
-    if (status != ASSAY_OK) {
-        fprintf(stderr, "bench_caches: %s\n", assay_context_error(context));
-        exit(1);
-    }
-}
-
 typedef struct {
     assay_image       *image;
     assay_render_stats stats;
@@ -64,7 +48,7 @@ typedef struct {
 
 static void set(assay_context *context, assay_params *params, const char *name, const char *value)
 {
-    require(context, assay_params_set(params, name, value));
+    bench_require(context, assay_params_set(params, name, value));
 }
 
 /* name=value,name=value */
@@ -91,12 +75,12 @@ static result render(assay_context *context, assay_scene *scene, const view *v, 
     options.camera                 = v->camera;
     options.layers                 = "color,split";
     options.seed                   = seed;
-    require(context, assay_method_params(context, method, &params));
+    bench_require(context, assay_method_params(context, method, &params));
     set(context, params, "bounces", v->bounces);
     set_all(context, params, settings);
-    const double start = seconds();
-    require(context, assay_render(scene, method, params, &options, &r.image, &r.stats));
-    r.seconds = seconds() - start;
+    const double start = bench_seconds(CLOCK_PROCESS_CPUTIME_ID);
+    bench_require(context, assay_render(scene, method, params, &options, &r.image, &r.stats));
+    r.seconds = bench_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
     assay_params_destroy(params);
     return r;
 }
@@ -144,18 +128,12 @@ static void compare(assay_context *context, const view *v, const char *settings)
     char                path[512];
     assay_scene        *scene   = NULL;
     assay_scene_options options = assay_scene_options_default();
-    const char         *shared  = getenv("ASSAY_SHARED_SCENES");
     options.force_diffuse       = true;
-    snprintf(path, sizeof path, "%s/%s",
-             strncmp(v->scene, "scenes/", 7) == 0 ? "."
-             : shared                             ? shared
-                                                  : "../shared/scenes",
-             v->scene);
-    if (access(path, R_OK) != 0) {
+    if (!bench_find_scene(path, sizeof path, v->scene)) {
         printf("%-28s not there: skipped\n", v->name);
         return;
     }
-    require(context, assay_scene_load(context, path, &options, &scene));
+    bench_require(context, assay_scene_load(context, path, &options, &scene));
     const result cache = render(context, scene, v, "irradiance-cache", settings, 1);
     char         spp[16];
     snprintf(spp, sizeof spp, "spp=%d", REFERENCE_SPP);

@@ -11,9 +11,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "assay/scene.h"
+#include "bench/bench.h"
 #include "gather/gather.h"
 #include "trace/path_trace.h"
 #include "trace/visible_point.h"
@@ -36,19 +36,6 @@ typedef struct {
     double reference[2], plane[WAYS];
 } values;
 
-static void stop(const char *message)
-{
-    fprintf(stderr, "bench_missing: %s\n", message);
-    exit(1);
-}
-
-static void require(assay_context *context, assay_status status)
-{
-    if (status != ASSAY_OK) {
-        stop(assay_context_error(context));
-    }
-}
-
 static assay_rgb direct(void *user, int cell, assay_vertex *vertex, assay_random *random,
                         int worker)
 {
@@ -64,14 +51,14 @@ static void create_hemispheres(assay_context *context, bench *b)
 {
     const assay_hemisphere_layout full = {
         .theta = 32, .phi = 100, .strata = ASSAY_STRATA_COSINE, .jitter = true};
-    require(context, assay_hemisphere_create(context, &full, &b->full));
+    bench_require(context, assay_hemisphere_create(context, &full, &b->full));
     for (int i = 0; i < WAYS; i++) {
         const assay_hemisphere_layout plane = {.theta   = SIDE,
                                                .phi     = SIDE,
                                                .strata  = ASSAY_STRATA_PLANE,
                                                .fov     = 2.2142974355881810,
                                                .missing = (assay_missing)i};
-        require(context, assay_hemisphere_create(context, &plane, &b->plane[i]));
+        bench_require(context, assay_hemisphere_create(context, &plane, &b->plane[i]));
     }
 }
 
@@ -90,7 +77,7 @@ static values measure_point(assay_context *context, bench *b, const assay_gather
                                   .radiance      = direct,
                                   .user          = b,
                                   .worker_counts = &b->counts};
-        require(context, assay_gather(&g, site, number, i < 2 ? b->full : b->plane[0]));
+        bench_require(context, assay_gather(&g, site, number, i < 2 ? b->full : b->plane[0]));
         if (i < 2) {
             v.reference[i] = luminance(b->full);
         }
@@ -134,8 +121,8 @@ static void measure(assay_context *context, const char *name, const char *path, 
     bench        b     = {0};
     assay_scene *scene = NULL;
     assay_world *world = NULL;
-    require(context, assay_scene_load(context, path, NULL, &scene));
-    require(context, assay_world_create(scene, &world));
+    bench_require(context, assay_scene_load(context, path, NULL, &scene));
+    bench_require(context, assay_world_create(scene, &world));
     b.world = world;
     create_hemispheres(context, &b);
     const assay_camera *chosen = &scene->world_cameras[0];
@@ -168,7 +155,7 @@ static void measure(assay_context *context, const char *name, const char *path, 
 int main(int count, char **argv)
 {
     const assay_context_options options = {.threads = 1};
-    const char                 *sponza  = "../shared/scenes/sponza_dabrovic/sponza_dabrovic.glb";
+    char                        sponza[4096];
     const int                   wanted  = count > 1 ? atoi(argv[1]) : 1000;
     assay_context              *context = NULL;
     if (wanted < 1 || assay_context_create(&options, &context) != ASSAY_OK) {
@@ -178,7 +165,7 @@ int main(int count, char **argv)
         measure(context, argv[2], argv[2], count > 3 ? argv[3] : NULL, wanted);
     } else {
         measure(context, "colonnade, atrium", "scenes/colonnade/colonnade.gltf", "atrium", wanted);
-        if (access(sponza, R_OK) == 0) {
+        if (bench_find_scene(sponza, sizeof sponza, "sponza_dabrovic/sponza_dabrovic.glb")) {
             measure(context, "Sponza, atrium", sponza, "atrium", wanted);
         }
     }

@@ -11,10 +11,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 #include "assay/render.h"
+#include "bench/bench.h"
 #include "core/numerics.h"
 #include "math/frame.h"
 #include "scene/scene_data.h"
@@ -32,26 +31,13 @@ typedef struct {
     struct RTCRay *rays;
 } bench;
 
-static double seconds(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void stop(const char *message)
-{
-    fprintf(stderr, "bench_path: %s\n", message);
-    exit(1);
-}
-
 static assay_scene *load(assay_context *context, const char *path)
 {
     assay_scene_options options = assay_scene_options_default();
     assay_scene        *scene   = NULL;
     options.background          = rgb_grey(1.0);
     if (assay_scene_load(context, path, &options, &scene) != ASSAY_OK) {
-        stop(assay_context_error(context));
+        bench_stop(assay_context_error(context));
     }
     return scene;
 }
@@ -68,7 +54,7 @@ static assay_render_stats render(assay_context *context, assay_scene *scene, con
     if (assay_method_params(context, "path", &params) != ASSAY_OK ||
         assay_params_set(params, "spp", "16") != ASSAY_OK ||
         assay_render(scene, "path", params, &options, &image, &stats) != ASSAY_OK) {
-        stop(assay_context_error(context));
+        bench_stop(assay_context_error(context));
     }
     assay_image_destroy(image);
     assay_params_destroy(params);
@@ -118,7 +104,7 @@ static void make_rays(bench *b)
     const assay_camera *camera = find_camera(b->scene, b->camera);
     assay_world        *world  = NULL;
     if (assay_world_create(b->scene, &world) != ASSAY_OK) {
-        stop("cannot build the tree");
+        bench_stop("cannot build the tree");
     }
     int made = 0;
     for (uint64_t i = 0; made < RAYS; i++) {
@@ -182,11 +168,11 @@ static void against_embree(assay_context *context, bench *b)
 {
     double ratio[ROUNDS], ours[ROUNDS], theirs[ROUNDS];
     for (int i = 0; i < ROUNDS; i++) {
-        const double             t0    = seconds(CLOCK_THREAD_CPUTIME_ID);
+        const double             t0    = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
         const assay_render_stats stats = render(context, b->scene, b->camera);
-        const double             t1    = seconds(CLOCK_THREAD_CPUTIME_ID);
+        const double             t1    = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
         run_embree(b);
-        const double t2 = seconds(CLOCK_THREAD_CPUTIME_ID);
+        const double t2 = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
         /* the tree is built anew by every render: its (wall) time is not the path tracer's */
         ours[i]   = ray_count(&stats) / (t1 - t0 - stats.seconds_build);
         theirs[i] = RAYS / (t2 - t1);
@@ -222,19 +208,20 @@ int main(int argc, char **argv)
     assay_context              *context = NULL;
     bench                       b       = {.camera = argc > 2 ? argv[2] : "atrium"};
     char                        sponza[4096];
-    const char                 *shared = getenv("ASSAY_SHARED_SCENES");
-    snprintf(sponza, sizeof sponza, "%s/sponza_dabrovic/sponza_dabrovic_nolight.glb",
-             shared ? shared : "../shared/scenes");
-    const char *path = argc > 1                    ? argv[1]
-                       : access(sponza, R_OK) == 0 ? sponza
-                                                   : "scenes/colonnade/colonnade.gltf";
+    const char                 *path = "scenes/colonnade/colonnade.gltf";
+    if (argc > 1) {
+        path = argv[1];
+    } else if (bench_find_scene(sponza, sizeof sponza,
+                                "sponza_dabrovic/sponza_dabrovic_nolight.glb")) {
+        path = sponza;
+    }
     if (argc == 2) {
         b.camera = NULL;
     }
     assay_context_create(&options, &context);
-    const double start           = seconds(CLOCK_MONOTONIC);
+    const double start           = bench_seconds(CLOCK_MONOTONIC);
     b.scene                      = load(context, path);
-    const double             end = seconds(CLOCK_MONOTONIC);
+    const double             end = bench_seconds(CLOCK_MONOTONIC);
     const assay_render_stats s   = render(context, b.scene, b.camera);
     const double             n   = b.scene->triangle_count;
     printf("%s: %.0f triangles; load %.2f s, tree %.2f s; bytes a triangle: %.0f geometry + %.0f "
@@ -243,7 +230,7 @@ int main(int argc, char **argv)
            (double)s.bvh_bytes / n, (double)(s.geometry_bytes + s.bvh_bytes) / n);
     b.rays = calloc(RAYS, sizeof *b.rays);
     if (!b.rays) {
-        stop("out of memory");
+        bench_stop("out of memory");
     }
     open_embree(&b);
     make_rays(&b);

@@ -10,11 +10,10 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "assay/scene.h"
+#include "bench/bench.h"
 #include "core/numerics.h"
 #include "gather/gather.h"
 #include "gather/shadow_map.h"
@@ -28,26 +27,6 @@ typedef struct {
     const assay_shadow_maps *maps;
     assay_ray_counts         counts;
 } bench;
-
-static void stop(const char *message)
-{
-    fprintf(stderr, "bench_raster: %s\n", message);
-    exit(1);
-}
-
-static void require(assay_context *context, assay_status status)
-{
-    if (status != ASSAY_OK) {
-        stop(assay_context_error(context));
-    }
-}
-
-static double thread_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static int compare_doubles(const void *a, const void *b)
 {
@@ -137,7 +116,7 @@ static void save(const mesh *m, const char *folder, char *path, size_t size)
     snprintf(path, size, "%s/hall.gltf", folder);
     FILE *json = fopen(path, "w");
     if (!bin || !json) {
-        stop("cannot write a scene");
+        bench_stop("cannot write a scene");
     }
     fwrite(m->positions, 1, positions, bin);
     fwrite(m->indices, 1, indices, bin);
@@ -168,7 +147,7 @@ static void write_hall(int n, const char *folder, char *path, size_t size)
     mesh         m        = {.positions = malloc(vertices * 3 * sizeof(float)),
                              .indices   = malloc(most * 3 * sizeof(unsigned))};
     if (!m.positions || !m.indices) {
-        stop("out of memory");
+        bench_stop("out of memory");
     }
     add_hall(&m, 8.0, 6.0, 8.0);
     for (int i = 0; i < 64; i++) {
@@ -247,11 +226,11 @@ static void measure(assay_context *context, const char *name, const assay_world 
                                            .missing = ASSAY_MISSING_BORDER_CORRECTED};
     assay_gather_site             sites[POINTS];
     double                        seconds[WAYS][POINTS], ratios[WAYS][POINTS];
-    require(context, assay_hemisphere_create(context, &rays, &planes[0]));
-    require(context, assay_hemisphere_create(context, &plane, &planes[1]));
-    const double start = thread_seconds();
-    require(context, assay_shadow_maps_create(world, &shadows, &maps));
-    const double map_seconds = thread_seconds() - start;
+    bench_require(context, assay_hemisphere_create(context, &rays, &planes[0]));
+    bench_require(context, assay_hemisphere_create(context, &plane, &planes[1]));
+    const double start = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
+    bench_require(context, assay_shadow_maps_create(world, &shadows, &maps));
+    const double map_seconds = bench_seconds(CLOCK_THREAD_CPUTIME_ID) - start;
     b.maps                   = maps;
     const int count          = find_points(&b, sites);
     for (int i = 0; i < count; i++) {
@@ -260,9 +239,9 @@ static void measure(assay_context *context, const char *name, const assay_world 
                                           .radiance      = WAY[w].radiance,
                                           .user          = &b,
                                           .worker_counts = &b.counts};
-            const double         begin = thread_seconds();
-            require(context, assay_gather(&g, &sites[i], (uint64_t)i, planes[WAY[w].raster]));
-            seconds[w][i] = thread_seconds() - begin;
+            const double         begin = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
+            bench_require(context, assay_gather(&g, &sites[i], (uint64_t)i, planes[WAY[w].raster]));
+            seconds[w][i] = bench_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
         }
         ratios[1][i] = seconds[0][i] / seconds[1][i];
         ratios[3][i] = seconds[2][i] / seconds[3][i];
@@ -284,8 +263,8 @@ static void measure_file(assay_context *context, const char *name, const char *p
 {
     assay_scene *scene = NULL;
     assay_world *world = NULL;
-    require(context, assay_scene_load(context, path, NULL, &scene));
-    require(context, assay_world_create(scene, &world));
+    bench_require(context, assay_scene_load(context, path, NULL, &scene));
+    bench_require(context, assay_world_create(scene, &world));
     measure(context, name, world);
     assay_world_destroy(world);
     assay_scene_destroy(scene);
@@ -295,7 +274,7 @@ int main(int count, char **argv)
 {
     static const int            rings[] = {3, 7, 13, 21, 51}; /* 4 n (n - 1) triangles, 64 times */
     const assay_context_options options = {.threads = 1};
-    const char                 *sponza  = "../shared/scenes/sponza_dabrovic/sponza_dabrovic.glb";
+    char                        sponza[4096];
     assay_context              *context = NULL;
     if (assay_context_create(&options, &context) != ASSAY_OK) {
         return 1;
@@ -306,7 +285,7 @@ int main(int count, char **argv)
     if (count < 2) {
         char folder[] = "/tmp/bench_raster.XXXXXX", path[256], bin[256];
         if (!mkdtemp(folder)) {
-            stop("cannot make a folder");
+            bench_stop("cannot make a folder");
         }
         snprintf(bin, sizeof bin, "%s/hall.bin", folder);
         for (size_t i = 0; i < sizeof rings / sizeof rings[0]; i++) {
@@ -317,7 +296,7 @@ int main(int count, char **argv)
         unlink(bin);
         rmdir(folder);
         measure_file(context, "colonnade", "scenes/colonnade/colonnade.gltf");
-        if (access(sponza, R_OK) == 0) {
+        if (bench_find_scene(sponza, sizeof sponza, "sponza_dabrovic/sponza_dabrovic.glb")) {
             measure_file(context, "Sponza", sponza);
         }
     }

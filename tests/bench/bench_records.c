@@ -8,9 +8,9 @@
  * random places, where each query finds its records far from those of the one before, so that the
  * machine's memory is measured as well. */
 #include <stdio.h>
-#include <stdlib.h>
-#include <time.h>
 
+#include "bench/bench.h"
+#include "bench/bench_walls.h"
 #include "core/numerics.h"
 #include "core/random.h"
 #include "record/record_store.h"
@@ -21,40 +21,6 @@ static const uint32_t SIZE[SIZES] = {1000, 3000, 10000, 30000, 100000, 300000};
 
 static const double A = 0.25, WANTED = 10.0;
 
-static double thread_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void stop(const char *message)
-{
-    fprintf(stderr, "bench_records: %s\n", message);
-    exit(1);
-}
-
-typedef struct {
-    assay_vec3 position, normal;
-} site;
-
-/* A place on one of the walls of a unit cube, looking in. */
-static site random_site(assay_random *random)
-{
-    const double u    = assay_random_next(random);
-    const double v    = assay_random_next(random);
-    const double wall = 6.0 * assay_random_next(random);
-    const double at = (int)wall % 2, in = 1.0 - 2.0 * at;
-    switch ((int)wall / 2) {
-    case 0: return (site){vec3(at, u, v), vec3(in, 0.0, 0.0)};
-    case 1: return (site){vec3(u, at, v), vec3(0.0, in, 0.0)};
-    default: return (site){vec3(u, v, at), vec3(0.0, 0.0, in)};
-    }
-}
-
-/* A disc of a R holds WANTED records on the average. */
-static double radius_for(uint32_t count) { return sqrt(WANTED * 6.0 / (ASSAY_PI * count)) / A; }
-
 static assay_record_store *make_store(assay_context *context, uint32_t count,
                                       assay_record_index index, double grown)
 {
@@ -63,11 +29,11 @@ static assay_record_store *make_store(assay_context *context, uint32_t count,
     assay_record_store      *store  = NULL;
     if (assay_record_store_create(context, &rules, vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0), index,
                                   &store) != ASSAY_OK) {
-        stop(assay_context_error(context));
+        bench_stop(assay_context_error(context));
     }
-    const double radius = radius_for(count);
+    const double radius = bench_record_radius(count, A, WANTED);
     for (uint32_t i = 0; i < count; i++) {
-        const site         s      = random_site(&random);
+        const bench_site   s      = bench_random_site(&random);
         const double       r      = radius * (0.7 + 0.6 * assay_random_next(&random));
         const assay_record record = {.position = s.position,
                                      .normal   = s.normal,
@@ -75,7 +41,7 @@ static assay_record_store *make_store(assay_context *context, uint32_t count,
                                      .mean     = r,
                                      .nearest  = r};
         if (assay_record_store_add(store, &record) != ASSAY_OK) {
-            stop(assay_context_error(context));
+            bench_stop(assay_context_error(context));
         }
         if (grown > 1.0) {
             assay_record_store_shrink(store, i, r);
@@ -85,17 +51,17 @@ static assay_record_store *make_store(assay_context *context, uint32_t count,
 }
 
 /* Either 2^15 sites at random, or 128 lines of 256 that wander over a plane. */
-static void make_queries(site *queries, bool lines)
+static void make_queries(bench_site *queries, bool lines)
 {
     assay_random random = assay_random_start(1, ASSAY_STAGE_TEST, 1, 0);
     for (int i = 0; i < QUERIES; i++) {
-        queries[i] = random_site(&random);
+        queries[i] = bench_random_site(&random);
         if (lines && i % 256) {
-            const site      *before = &queries[i - 1];
-            const assay_vec3 n      = before->normal;
-            const assay_vec3 along  = vec3_cross(n, vec3(0.6 * n.y, 0.6 * n.z, 0.6 * n.x));
-            queries[i]              = *before;
-            queries[i].position     = vec3_mad(before->position, 0.001, along);
+            const bench_site *before = &queries[i - 1];
+            const assay_vec3  n      = before->normal;
+            const assay_vec3  along  = vec3_cross(n, vec3(0.6 * n.y, 0.6 * n.z, 0.6 * n.x));
+            queries[i]               = *before;
+            queries[i].position      = vec3_mad(before->position, 0.001, along);
         }
     }
 }
@@ -105,28 +71,28 @@ typedef struct {
     double found, weight;
 } result;
 
-static void run(const assay_record_store *store, const site *queries, int count,
+static void run(const assay_record_store *store, const bench_site *queries, int count,
                 assay_contributions *list, result *r)
 {
     size_t       found  = 0;
     double       weight = 0.0;
-    const double start  = thread_seconds();
+    const double start  = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
     for (int i = 0; i < count; i++) {
         if (assay_record_store_find(store, queries[i].position, queries[i].normal, UINT32_MAX,
                                     list) != ASSAY_OK) {
-            stop("out of memory");
+            bench_stop("out of memory");
         }
         found += list->count;
         weight += list->weight;
     }
-    const double nanoseconds = 1e9 * (thread_seconds() - start) / count;
+    const double nanoseconds = 1e9 * (bench_seconds(CLOCK_THREAD_CPUTIME_ID) - start) / count;
     r->nanoseconds = r->nanoseconds > 0.0 ? fmin(r->nanoseconds, nanoseconds) : nanoseconds;
     r->found       = (double)found / count;
     r->weight      = weight;
 }
 
-static void measure(assay_record_store *const stores[], int sizes, const site *queries, int count,
-                    const char *what)
+static void measure(assay_record_store *const stores[], int sizes, const bench_site *queries,
+                    int count, const char *what)
 {
     result              r[SIZES] = {{0}};
     assay_contributions list     = {0};
@@ -153,20 +119,20 @@ static void destroy(assay_record_store *stores[], int count)
 int main(void)
 {
     assay_context      *context = NULL;
-    static site         lines[QUERIES], random[QUERIES];
+    static bench_site   lines[QUERIES], random[QUERIES];
     assay_record_store *octree[SIZES], *shrunk[SIZES], *list[LIST_SIZES];
     if (assay_context_create(NULL, &context) != ASSAY_OK) {
-        stop("cannot make a context");
+        bench_stop("cannot make a context");
     }
     make_queries(lines, true);
     make_queries(random, false);
     for (int k = 0; k < SIZES; k++) {
-        const double start = thread_seconds();
+        const double start = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
         octree[k]          = make_store(context, SIZE[k], ASSAY_INDEX_OCTREE, 1.0);
         const double bytes = (double)assay_record_store_bytes(octree[k]);
         printf("%u records: made in %.0f ns each, %.0f bytes each (%zu of them the record)\n",
-               SIZE[k], 1e9 * (thread_seconds() - start) / SIZE[k], bytes / SIZE[k],
-               sizeof(assay_record));
+               SIZE[k], 1e9 * (bench_seconds(CLOCK_THREAD_CPUTIME_ID) - start) / SIZE[k],
+               bytes / SIZE[k], sizeof(assay_record));
         shrunk[k] = make_store(context, SIZE[k], ASSAY_INDEX_OCTREE, 16.0);
         if (k < LIST_SIZES) {
             list[k] = make_store(context, SIZE[k], ASSAY_INDEX_LIST, 1.0);

@@ -9,8 +9,9 @@
  * adds them up and divides.  One thread, by processor time; the least of some rounds, in turns. */
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
+#include "bench/bench.h"
+#include "bench/bench_walls.h"
 #include "core/numerics.h"
 #include "core/random.h"
 #include "record/splat.h"
@@ -23,50 +24,18 @@ static const uint32_t COUNT[COUNTS] = {1000, 4000, 10000, 50000};
 
 static const double A = 0.25, WANTED = 10.0;
 
-static double thread_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void require(assay_context *context, assay_status status)
-{
-    if (status != ASSAY_OK) {
-        fprintf(stderr, "bench_splat: %s\n", assay_context_error(context));
-        exit(1);
-    }
-}
-
-typedef struct {
-    assay_vec3 position, normal;
-} site;
-
-/* A place on one of the walls of a unit cube, looking in. */
-static site random_site(assay_random *random)
-{
-    const double u    = assay_random_next(random);
-    const double v    = assay_random_next(random);
-    const double wall = 6.0 * assay_random_next(random);
-    const double at = (int)wall % 2, in = 1.0 - 2.0 * at;
-    switch ((int)wall / 2) {
-    case 0: return (site){vec3(at, u, v), vec3(in, 0.0, 0.0)};
-    case 1: return (site){vec3(u, at, v), vec3(0.0, in, 0.0)};
-    default: return (site){vec3(u, v, at), vec3(0.0, 0.0, in)};
-    }
-}
-
 static assay_record_store *make_store(assay_context *context, uint32_t count)
 {
     const assay_record_rules rules = {
         .a = A, .gradients = ASSAY_GRADIENTS_BOTH, .clamp_negative = true};
-    const double        radius = sqrt(WANTED * 6.0 / (ASSAY_PI * count)) / A;
+    const double        radius = bench_record_radius(count, A, WANTED);
     assay_random        random = assay_random_start(count, ASSAY_STAGE_TEST, 0, 0);
     assay_record_store *store  = NULL;
-    require(context, assay_record_store_create(context, &rules, vec3(0.0, 0.0, 0.0),
-                                               vec3(1.0, 1.0, 1.0), ASSAY_INDEX_OCTREE, &store));
+    bench_require(context,
+                  assay_record_store_create(context, &rules, vec3(0.0, 0.0, 0.0),
+                                            vec3(1.0, 1.0, 1.0), ASSAY_INDEX_OCTREE, &store));
     for (uint32_t i = 0; i < count; i++) {
-        const site         s      = random_site(&random);
+        const bench_site   s      = bench_random_site(&random);
         const double       r      = radius * (0.7 + 0.6 * assay_random_next(&random));
         const assay_record record = {.position   = s.position,
                                      .normal     = s.normal,
@@ -74,13 +43,13 @@ static assay_record_store *make_store(assay_context *context, uint32_t count)
                                      .mean       = r,
                                      .nearest    = r,
                                      .irradiance = {1.0, 1.0, 1.0}};
-        require(context, assay_record_store_add(store, &record));
+        bench_require(context, assay_record_store_add(store, &record));
     }
     return store;
 }
 
 /* The wall that a ray from within leaves through. */
-static site leave(assay_vec3 origin, assay_vec3 direction)
+static bench_site leave(assay_vec3 origin, assay_vec3 direction)
 {
     const double o[3] = {origin.x, origin.y, origin.z};
     const double d[3] = {direction.x, direction.y, direction.z};
@@ -92,8 +61,8 @@ static site leave(assay_vec3 origin, assay_vec3 direction)
         t                 = here < t ? here : t;
     }
     const double in = d[axis] > 0.0 ? -1.0 : 1.0;
-    return (site){vec3_mad(origin, t, direction),
-                  vec3(axis == 0 ? in : 0.0, axis == 1 ? in : 0.0, axis == 2 ? in : 0.0)};
+    return (bench_site){vec3_mad(origin, t, direction),
+                        vec3(axis == 0 ? in : 0.0, axis == 1 ? in : 0.0, axis == 2 ? in : 0.0)};
 }
 
 static assay_camera room_camera(void)
@@ -106,10 +75,10 @@ static assay_camera room_camera(void)
                           .tan_half_yfov = 0.7};
 }
 
-static site *make_points(int side)
+static bench_site *make_points(int side)
 {
     const assay_camera camera = room_camera();
-    site              *points = malloc((size_t)side * (size_t)side * sizeof *points);
+    bench_site        *points = malloc((size_t)side * (size_t)side * sizeof *points);
     for (int i = 0; points && i < side * side; i++) {
         assay_vec3 origin, direction;
         assay_camera_ray(&camera, i % side + 0.5, i / side + 0.5, side, side, &origin, &direction);
@@ -124,10 +93,11 @@ typedef struct {
     double sum_octree, sum_splat;
 } result;
 
-static void ask_octree(const assay_record_store *store, const site *points, int pixels, result *r)
+static void ask_octree(const assay_record_store *store, const bench_site *points, int pixels,
+                       result *r)
 {
     assay_contributions found = {0};
-    const double        start = thread_seconds();
+    const double        start = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
     r->sum_octree             = 0.0;
     for (int i = 0; i < pixels; i++) {
         if (assay_record_store_find(store, points[i].position, points[i].normal, UINT32_MAX,
@@ -140,7 +110,7 @@ static void ask_octree(const assay_record_store *store, const site *points, int 
                     .g;
         }
     }
-    r->octree = fmin(r->octree, 1e3 * (thread_seconds() - start));
+    r->octree = fmin(r->octree, 1e3 * (bench_seconds(CLOCK_THREAD_CPUTIME_ID) - start));
     assay_contributions_release(&found);
 }
 
@@ -148,16 +118,17 @@ static void splat_all(assay_context *context, assay_splat_buffer *buffer,
                       const assay_record_store *store, int pixels, result *r)
 {
     const assay_splat_source source = {.store = store, .rules = *assay_record_store_rules(store)};
-    const double             start  = thread_seconds();
+    const double             start  = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
     r->sum_splat                    = 0.0;
-    require(context, assay_splat_buffer_close(buffer));
-    const double closed = thread_seconds();
-    require(context, assay_splat_records(buffer, &source, 0, assay_record_store_count(store)));
+    bench_require(context, assay_splat_buffer_close(buffer));
+    const double closed = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
+    bench_require(context,
+                  assay_splat_records(buffer, &source, 0, assay_record_store_count(store)));
     for (int i = 0; i < pixels; i++) {
         r->sum_splat += assay_splat_mean(buffer, (size_t)i).g;
     }
-    r->splat      = fmin(r->splat, 1e3 * (thread_seconds() - start));
-    r->splat_only = fmin(r->splat_only, 1e3 * (thread_seconds() - closed));
+    r->splat      = fmin(r->splat, 1e3 * (bench_seconds(CLOCK_THREAD_CPUTIME_ID) - start));
+    r->splat_only = fmin(r->splat_only, 1e3 * (bench_seconds(CLOCK_THREAD_CPUTIME_ID) - closed));
 }
 
 static void measure(assay_context *context, int side, uint32_t count)
@@ -165,10 +136,10 @@ static void measure(assay_context *context, int side, uint32_t count)
     const assay_camera  camera = room_camera();
     const int           pixels = side * side;
     assay_record_store *store  = make_store(context, count);
-    site               *points = make_points(side);
+    bench_site         *points = make_points(side);
     assay_splat_buffer *buffer = NULL;
     result              r      = {INFINITY, INFINITY, INFINITY, 0.0, 0.0};
-    require(context, assay_splat_buffer_create(context, side, side, &buffer));
+    bench_require(context, assay_splat_buffer_create(context, side, side, &buffer));
     assay_splat_buffer_look(buffer, &camera);
     for (int i = 0; i < pixels; i++) {
         assay_splat_buffer_set(buffer, (size_t)i, points[i].position, points[i].normal);

@@ -10,10 +10,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 #include "assay/render.h"
+#include "bench/bench.h"
 #include "core/numerics.h"
 #include "methods/cache_params.h"
 #include "methods/radiance_params.h"
@@ -39,21 +38,6 @@ static const subject SUBJECTS[] = {
      ONE_BOUNCE "a=0.25,theta_strata=8,phi_strata=25,order=10,glossy_accuracy=0.8"},
 };
 
-static double thread_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void require(assay_context *context, assay_status status)
-{
-    if (status != ASSAY_OK) {
-        fprintf(stderr, "bench_splat_scenes: %s\n", assay_context_error(context));
-        exit(1);
-    }
-}
-
 /* ---- the render, and what it left ---- */
 
 typedef struct {
@@ -77,7 +61,7 @@ static void set_all(bench *b, const char *list)
         char *value = strchr(item, '=');
         if (value) {
             *value = '\0';
-            require(b->context, assay_params_set(b->params, item, value + 1));
+            bench_require(b->context, assay_params_set(b->params, item, value + 1));
         }
     }
 }
@@ -86,19 +70,13 @@ static bool load(bench *b, const subject *what)
 {
     char                path[512];
     assay_scene_options options = assay_scene_options_default();
-    const char         *shared  = getenv("ASSAY_SHARED_SCENES");
     options.force_diffuse       = what->diffuse;
-    snprintf(path, sizeof path, "%s/%s",
-             strncmp(what->scene, "scenes/", 7) == 0 ? "."
-             : shared                                ? shared
-                                                     : "../shared/scenes",
-             what->scene);
-    if (access(path, R_OK) != 0) {
+    if (!bench_find_scene(path, sizeof path, what->scene)) {
         printf("%-14s not there: skipped\n", what->name);
         return false;
     }
-    require(b->context, assay_scene_load(b->context, path, &options, &b->scene));
-    require(b->context, assay_world_create(b->scene, &b->world));
+    bench_require(b->context, assay_scene_load(b->context, path, &options, &b->scene));
+    bench_require(b->context, assay_world_create(b->scene, &b->world));
     b->camera = b->scene->world_cameras;
     for (uint32_t i = 0; i < b->scene->world_camera_count; i++) {
         if (strcmp(b->scene->world_cameras[i].name, what->camera) == 0) {
@@ -113,7 +91,7 @@ static void render(bench *b, const subject *what, const char *settings)
     assay_image         *image   = NULL;
     assay_render_options options = assay_render_options_default();
     assay_render_stats   stats;
-    require(b->context, assay_method_params(b->context, "splat", &b->params));
+    bench_require(b->context, assay_method_params(b->context, "splat", &b->params));
     set_all(b, what->settings);
     set_all(b, settings);
     snprintf(b->folder, sizeof b->folder, "/tmp/assay_bench_XXXXXX");
@@ -125,8 +103,8 @@ static void render(bench *b, const subject *what, const char *settings)
     options.camera                 = what->camera;
     options.layers                 = "color";
     options.dump                   = b->dump;
-    require(b->context, assay_render(b->scene, "splat", b->params, &options, &image, &stats));
-    require(b->context, assay_bundle_open(b->context, b->dump, &b->reader));
+    bench_require(b->context, assay_render(b->scene, "splat", b->params, &options, &image, &stats));
+    bench_require(b->context, assay_bundle_open(b->context, b->dump, &b->reader));
     printf("%-14s %d x %d, %llu records, rendered in %.1f s on %d threads\n", what->name, b->side,
            b->side, (unsigned long long)stats.records, stats.seconds_render, stats.threads);
     assay_image_destroy(image);
@@ -134,7 +112,8 @@ static void render(bench *b, const subject *what, const char *settings)
 
 static const double *values_of(bench *b, const char *name, size_t columns, assay_array **array_out)
 {
-    require(b->context, assay_bundle_read_table(b->reader, name, b->pixels, columns, array_out));
+    bench_require(b->context,
+                  assay_bundle_read_table(b->reader, name, b->pixels, columns, array_out));
     return assay_array_values(*array_out);
 }
 
@@ -150,7 +129,7 @@ static points open_points(bench *b, const char *position, const char *frame)
     points p;
     p.position = values_of(b, position, 3, &p.arrays[0]);
     p.frame    = values_of(b, frame, 9, &p.arrays[1]);
-    require(b->context, assay_splat_buffer_create(b->context, b->side, b->side, &p.buffer));
+    bench_require(b->context, assay_splat_buffer_create(b->context, b->side, b->side, &p.buffer));
     assay_splat_buffer_look(p.buffer, b->camera);
     for (size_t i = 0; i < b->pixels; i++) {
         const double *x = p.position + 3 * i, *n = p.frame + 9 * i + 6;
@@ -179,21 +158,21 @@ static void compare(bench *b, points *p, const assay_splat_source *source, const
     const uint32_t count  = assay_record_store_count(source->store);
     double         octree = INFINITY, splat = INFINITY, sums[2] = {0.0, 0.0};
     for (int round = 0; round < ROUNDS; round++) {
-        double start = thread_seconds();
+        double start = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
         sums[0] = sums[1] = 0.0;
         for (size_t i = 0; i < b->pixels; i++) {
             const double *x = p->position + 3 * i, *n = p->frame + 9 * i + 6;
             sums[0] +=
                 isnan(x[0]) ? 0.0 : ask(user, i, vec3(x[0], x[1], x[2]), vec3(n[0], n[1], n[2])).g;
         }
-        octree = fmin(octree, thread_seconds() - start);
-        start  = thread_seconds();
-        require(b->context, assay_splat_buffer_close(p->buffer));
-        require(b->context, assay_splat_records(p->buffer, source, 0, count));
+        octree = fmin(octree, bench_seconds(CLOCK_THREAD_CPUTIME_ID) - start);
+        start  = bench_seconds(CLOCK_THREAD_CPUTIME_ID);
+        bench_require(b->context, assay_splat_buffer_close(p->buffer));
+        bench_require(b->context, assay_splat_records(p->buffer, source, 0, count));
         for (size_t i = 0; i < b->pixels; i++) {
             sums[1] += assay_splat_mean(p->buffer, i).g;
         }
-        splat = fmin(splat, thread_seconds() - start);
+        splat = fmin(splat, bench_seconds(CLOCK_THREAD_CPUTIME_ID) - start);
     }
     printf("%14s %6u %s records: octree %.0f ms, splatting %.0f ms, octree / splatting %.2f\n", "",
            count, what, 1e3 * octree, 1e3 * splat, octree / splat);
@@ -259,11 +238,12 @@ static assay_rgb ask_radiance(void *user, size_t pixel, assay_vec3 position, ass
     bool               found  = false;
     assay_rgb          result = rgb_grey(0.0);
     (void)normal;
-    require(u->bench->context, assay_radiance_cache_look_up(u->cache, position, &vertex.frame,
-                                                            UINT32_MAX, 0, u->light, &found));
+    bench_require(u->bench->context, assay_radiance_cache_look_up(u->cache, position, &vertex.frame,
+                                                                  UINT32_MAX, 0, u->light, &found));
     if (found) {
-        require(u->bench->context, assay_material_grids_reflect(u->grids, u->count, &vertex,
-                                                                u->light, u->scratch, &result));
+        bench_require(u->bench->context,
+                      assay_material_grids_reflect(u->grids, u->count, &vertex, u->light,
+                                                   u->scratch, &result));
     }
     return result;
 }
@@ -282,7 +262,7 @@ static void compare_radiance(bench *b, assay_radiance_cache *cache, const glossy
     for (uint32_t i = 0; i < made->count; i++) { /* these scenes have one */
         user.grids = made->grids[i].slope ? &made->grids[i] : user.grids;
     }
-    require(b->context, splat_gloss_create(b->context, b->pixels, cache, &gloss));
+    bench_require(b->context, splat_gloss_create(b->context, b->pixels, cache, &gloss));
     for (size_t i = 0; i < b->pixels; i++) {
         const assay_vertex vertex = vertex_of(user.brdf + BRDF * i);
         splat_gloss_set(gloss, i, user.grids, &vertex);
@@ -311,20 +291,21 @@ static void compare_all(bench *b)
     glossy_materials            made       = {0};
     assay_irradiance_cache     *irradiance = NULL;
     assay_radiance_cache       *radiance   = NULL;
-    require(b->context, assay_radiance_params_read(b->context, b->params, &read));
-    require(b->context,
-            assay_cache_params_read(b->context, b->params, &read.cache.records, &image));
-    require(b->context,
-            assay_irradiance_cache_create(b->world, &read.cache.records, 0, &irradiance));
-    require(b->context, assay_record_bundle_read(b->context, b->reader, "records", SIZE_MAX,
-                                                 assay_irradiance_cache_store(irradiance)));
+    bench_require(b->context, assay_radiance_params_read(b->context, "splat", b->params, &read));
+    bench_require(b->context,
+                  assay_cache_params_read(b->context, b->params, &read.cache.records, &image));
+    bench_require(b->context,
+                  assay_irradiance_cache_create(b->world, &read.cache.records, 0, &irradiance));
+    bench_require(b->context, assay_record_bundle_read(b->context, b->reader, "records", SIZE_MAX,
+                                                       assay_irradiance_cache_store(irradiance)));
     compare_irradiance(b, irradiance);
     if (assay_record_bundle_is_there(b->reader, "radiance_records")) {
-        require(b->context, assay_radiance_params_materials(b->context, b->scene, &read, &made));
-        require(b->context,
-                assay_radiance_cache_create(b->context, irradiance, &read.cache, &radiance));
-        require(b->context,
-                assay_radiance_bundle_read(b->context, b->reader, "radiance_records", radiance));
+        bench_require(b->context,
+                      assay_radiance_params_materials(b->context, b->scene, &read, &made));
+        bench_require(b->context,
+                      assay_radiance_cache_create(b->context, irradiance, &read.cache, &radiance));
+        bench_require(b->context, assay_radiance_bundle_read(b->context, b->reader,
+                                                             "radiance_records", radiance));
         compare_radiance(b, radiance, &made);
     }
     assay_radiance_cache_destroy(radiance);

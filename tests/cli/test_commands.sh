@@ -28,12 +28,12 @@ run
 { [ "$code" -eq 2 ] && [ ! -s "$folder/stdout" ] && grep -q usage "$folder/stderr"; }
 result $? "no command: usage on stderr, exit code 2"
 for words in --help -h help --version "render --help" "render -h" "scene --help" "scene -h" \
-    "methods --help" "methods -h" "diff --help" "diff -h" "verify --help" "verify -h"; do
+    "methods --help" "methods -h" "diff --help" "diff -h" "verify --help" "verify -h" "report --help" "report -h"; do
     run $words
     went_well && [ -s "$folder/stdout" ]
     result $? "$words: stdout, exit code 0"
 done
-for command in render scene methods diff verify replay; do
+for command in render scene methods diff verify replay report; do
     run $command --help
     missing=$(sed -n 's/^.*{"\([a-z-]*\)", \(0\|.[a-z].\), .*/\1/p' src/cli/cmd_$command.c |
         while read -r name; do grep -q -- "--$name" "$folder/stdout" || echo "$name"; done)
@@ -58,7 +58,7 @@ same_options() { # COMMAND
     [ -s "$folder/help" ] && diff "$folder/man" "$folder/help" > "$folder/difference"
 }
 man=docs/assay.1
-for command in render scene methods diff verify replay; do
+for command in render scene methods diff verify replay report; do
     same_options $command || sed 's/^/# /' "$folder/difference"
     same_options $command
     result $? "the man page has the options of $command"
@@ -273,7 +273,7 @@ same "an output without extension is an image" "$a" "$folder/plain"
 
 # ---- layers ----
 channels() { # FILE: first parts of all channel names
-    "$assay" diff "$1" "$1" | sed '1d; $d; s/ .*//; s/^Variance\.//; s/\.[A-Z]$//' | sort -u | tr '\n' ' '
+    "$assay" diff "$1" "$1" | sed '1d; /^$/,$d; s/ .*//; s/^Variance\.//; s/\.[A-Z]$//' | sort -u | tr '\n' ' '
 }
 expect_channels() { # LAYERS CHANNELS
     render "--layers $1" --layers "$1" -o "$b"
@@ -448,6 +448,8 @@ result $? "diff --json: other pixels: 1"
 run diff "$a" "$folder/color.exr"
 [ "$code" -eq 1 ] && [ ! -s "$folder/stderr" ]
 result $? "diff: a channel is missing: 1"
+grep -q '^only in A: Z$' "$folder/stdout"
+result $? "diff names a channel that one image lacks"
 "$assay" render $box $small --layers gbuffer -o "$folder/gbuffer.exr"
 refuses "diff: no channel in common" 2 "channel" diff "$folder/color.exr" "$folder/gbuffer.exr"
 "$assay" render $box --size 4x8 --spp 1 -o "$folder/other.exr"
@@ -461,6 +463,49 @@ refuses "diff: three images" 2 "two images" diff "$a" "$a" "$a"
 for scale in 0 -1 nan x; do
     refuses "diff --scale $scale" 2 "--scale" diff "$a" "$a" --scale $scale --heat-map "$out/h.png"
 done
+"$assay" render $box --size 16x12 --spp 1 -o "$folder/c.exr"
+"$assay" render $box --size 16x12 --spp 1 --seed 5 -o "$folder/d.exr"
+for map in png exr; do
+    run diff "$folder/c.exr" "$folder/d.exr" --flip-map "$folder/flip.$map"
+    [ "$code" -eq 1 ] && [ ! -s "$folder/stderr" ] && [ -s "$folder/flip.$map" ] &&
+        grep -q '^SSIM  [-0-9.]*$' "$folder/stdout" && grep -q '^LDR-FLIP  mean 0\.[0-9]* ' "$folder/stdout" &&
+        grep -q '^HDR-FLIP  mean 0\.[0-9]* .*aces' "$folder/stdout"
+    result $? "diff --flip-map: $map"
+done
+[ "$("$assay" diff "$folder/flip.exr" "$folder/flip.exr" | sed '1d; /^$/,$d; s/ .*//' | tr '\n' ' ')" = "Exposure FLIP " ]
+result $? "diff --flip-map F.exr: its channels"
+run diff "$folder/c.exr" "$folder/d.exr" --flip ldr --layer Indirect --exposure 2 --ppd 20
+[ "$code" -eq 1 ] && grep -q '^Indirect.RGB ' "$folder/stdout" && ! grep -q HDR "$folder/stdout"
+result $? "diff --flip ldr --layer"
+run diff "$folder/c.exr" "$folder/d.exr" --flip hdr --tone-mapper hable --start-exposure -2 \
+    --stop-exposure 1 --exposures 3
+[ "$code" -eq 1 ] && grep -q '^HDR-FLIP .*(hable, 3 exposures, -2.0000 to 1.0000)$' "$folder/stdout"
+result $? "diff --tone-mapper and exposures"
+run diff "$folder/c.exr" "$folder/d.exr" --flip none
+[ "$code" -eq 1 ] && ! grep -q FLIP "$folder/stdout"
+result $? "diff --flip none"
+accepts "diff: no picture, a table" diff "$folder/gbuffer.exr" "$folder/gbuffer.exr"
+! grep -q SSIM "$folder/stdout"
+result $? "diff: no picture, no SSIM"
+refuses "diff: the picture of one image is missing" 2 'channel "R"' diff "$a" "$folder/gbuffer.exr"
+refuses "diff: a layer that is not there" 2 'channel "Nowhere.R"' diff "$a" "$a" --layer Nowhere
+refuses "diff: a layer of numbers" 2 'channel "SampleCount.R"' diff "$a" "$a" --layer SampleCount
+refuses "diff: start after stop" 2 "start at 3 stops" diff "$a" "$a" --start-exposure 3 \
+    --stop-exposure 2 --flip-map "$out/f.png"
+refuses "diff --flip x" 2 "--flip" diff "$a" "$a" --flip x
+refuses "diff --ppd 0" 2 "--ppd" diff "$a" "$a" --ppd 0
+refuses "diff --exposure 101" 2 "--exposure" diff "$a" "$a" --exposure 101
+refuses "diff --exposures 0" 2 "--exposures" diff "$a" "$a" --exposures 0
+refuses "diff --tone-mapper x" 2 "--tone-mapper" diff "$a" "$a" --tone-mapper x
+refuses "diff: a tone mapper without HDR" 2 "without HDR-FLIP" diff "$a" "$a" --flip ldr --tone-mapper aces
+refuses "diff: a map without FLIP" 2 "--flip-map" diff "$a" "$a" --flip none --flip-map "$out/f.png"
+refuses "diff: both maps in one file" 2 "the same file" diff "$a" "$a" --heat-map "$out/f.png" \
+    --flip-map "$out/f.png"
+refuses "diff: a FLIP map in another format" 2 ".png" diff "$a" "$a" --flip-map "$out/f.jpg"
 refuses "diff: missing file" 2 "missing.exr" diff "$a" "$folder/missing.exr"
-refuses "diff: heat map in another format" 2 ".png" diff "$a" "$a" --heat-map "$out/h.exr"
+refuses "diff: heat map in another format" 2 ".png" diff "$a" "$a" --heat-map "$out/h.jpg"
+refuses "diff: a scale of numbers" 2 "--scale" diff "$a" "$a" --scale 2 --heat-map "$out/h.exr"
+run diff "$a" "$b" --heat-map "$folder/heat.exr" --flip none
+"$assay" diff "$folder/heat.exr" "$folder/heat.exr" | grep -q '^RelativeError '
+result $? "diff --heat-map F.exr"
 finish

@@ -234,13 +234,50 @@ static void methods_report(void **state)
     cJSON_Delete(one);
 }
 
+static void check_picture(const cJSON *same, const cJSON *other)
+{
+    static const char *const numbers[] = {"pixels_per_degree",
+                                          "mean_a",
+                                          "mean_error",
+                                          "rmse",
+                                          "mse",
+                                          "relative_mse",
+                                          "relative_rmse",
+                                          "flip_hdr/mean",
+                                          "flip_hdr/maximum",
+                                          "flip_hdr/first_quartile",
+                                          "flip_hdr/minimum",
+                                          "flip_hdr/third_quartile",
+                                          "flip_hdr/max_x",
+                                          "flip_hdr/weighted_median",
+                                          "flip_hdr/max_y",
+                                          "flip_hdr/start_exposure",
+                                          "flip_hdr/exposures",
+                                          "flip_hdr/stop_exposure",
+                                          "flip_ldr/mean",
+                                          "flip_ldr/exposures"};
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        char path[64];
+        snprintf(path, sizeof path, "picture/%s", numbers[i]);
+        number(other, path);
+    }
+    assert_true(number(same, "picture/ssim") == 1.0 &&
+                number(same, "picture/flip_hdr/mean") == 0.0);
+    assert_true(number(other, "picture/ssim") < 1.0 &&
+                number(other, "picture/flip_ldr/mean") > 0.0);
+    assert_string_equal(text(other, "picture/tone_mapper"), "aces");
+    assert_string_equal(text(other, "picture/layer"), "");
+    assert_int_equal(cJSON_GetArraySize(json_member(other, "only_in_a")), 0);
+    assert_int_equal(cJSON_GetArraySize(json_member(other, "only_in_b")), 0);
+}
+
 static void diff_report(void **state)
 {
     (void)state;
-    static const char *const numbers[] = {"pixels", "differing",  "not_finite",   "mean_a",
-                                          "mean_b", "max_abs",    "max_x",        "max_y",
-                                          "rmse",   "mean_error", "relative_rmse"};
-    temporary                folder    = temporary_create();
+    static const char *const numbers[] = {
+        "pixels", "differing", "not_finite", "mean_a",        "mean_b", "max_abs",     "max_x",
+        "max_y",  "rmse",      "mean_error", "relative_rmse", "mse",    "relative_mse"};
+    temporary folder = temporary_create();
     for (int seed = 1; seed <= 2; seed++) {
         char name[16];
         snprintf(name, sizeof name, "%d.exr", seed);
@@ -251,6 +288,7 @@ static void diff_report(void **state)
     assert_true(cJSON_IsTrue(json_member(same, "identical")));
     cJSON *other = run_json(1, "diff %s/1.exr %s/2.exr --json", folder.folder, folder.folder);
     assert_true(cJSON_IsFalse(json_member(other, "identical")));
+    check_picture(same, other);
     const cJSON *channel;
     int          judged = 0;
     cJSON_ArrayForEach(channel, json_member(other, "channels"))

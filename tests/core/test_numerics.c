@@ -40,6 +40,15 @@ static double worst_error(function f, exact_function exact, double low, double h
     return worst;
 }
 
+/* Over its period of three powers of two, and at the ends of its range. */
+static void cube_root(void **state)
+{
+    (void)state;
+    assert_true(worst_error(assay_cbrt, cbrtl, 0.125, 1.0, 90) <= 5.0);
+    assert_true(worst_error(assay_cbrt, cbrtl, DBL_MIN, 1e-300, 91) <= 5.0);
+    assert_true(worst_error(assay_cbrt, cbrtl, 1e300, DBL_MAX, 92) <= 5.0);
+}
+
 static long double exact_exp2(long double x) { return exp2l(x); }
 
 static const double TOLERANCE = LDBL_MANT_DIG > 53 ? 1.0 : 1.6;
@@ -151,8 +160,11 @@ static void special_values(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_argument),   cmocka_unit_test(mutant_is_caught),
-        cmocka_unit_test(two_arguments),  cmocka_unit_test(turns),
+        cmocka_unit_test(cube_root),
+        cmocka_unit_test(one_argument),
+        cmocka_unit_test(mutant_is_caught),
+        cmocka_unit_test(two_arguments),
+        cmocka_unit_test(turns),
         cmocka_unit_test(special_values),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

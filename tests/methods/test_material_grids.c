@@ -193,12 +193,72 @@ static void reflects_as_the_brdf_does(void **state)
     close_bench(&b);
 }
 
+/* ---- the same lobe ---- */
+
+/* What the lobe depends on, one change a number; 0 and 1: no change of the lobe. */
+static assay_material changed(assay_material_model model, int number)
+{
+    assay_material m = material_of(model);
+    switch (number) {
+    case 1: m.base_color[0] = 0.9; break;
+    case 2: m.roughness = 0.7; break;
+    case 3: m.metallic = 0.5; break;
+    case 4: m.ior = 1.4; break;
+    case 5: m.specular_factor = 0.5; break;
+    case 6: m.specular_color = rgb(0.4, 0.5, 0.4); break;
+    case 7: m.exponent = 13.0; break;
+    case 8: m.alpha_x = 0.4; break;
+    case 9: m.alpha_y = 0.4; break;
+    case 10: m.solid = true; break;
+    default: break;
+    }
+    return m;
+}
+
+enum { CHANGES = 11 };
+
+/* Said to be the same: then an own grid has the same bits. */
+static void the_same_lobe(void **state)
+{
+    (void)state;
+    static const assay_material_model  models[] = {ASSAY_MATERIAL_PBR, ASSAY_MATERIAL_PHONG,
+                                                   ASSAY_MATERIAL_WARD};
+    bench                              b        = open_bench();
+    const assay_material_grid_settings settings = {
+        .basis = b.hsh, .side = 4, .nodes = 12, .beyond_lambert = true};
+    const assay_vec3 wo        = vec3_normalize(vec3(0.6, 0.2, 0.8));
+    int              differ[3] = {0, 0, 0};
+    for (int i = 0; i < 3 * CHANGES; i++) {
+        const assay_material m = material_of(models[i / CHANGES]);
+        const assay_material n = changed(models[i / CHANGES], i % CHANGES);
+        assay_material_grids x = {0}, y = {0};
+        double               scratch[COUNT], p[3 * COUNT], q[3 * COUNT];
+        assert_int_equal(assay_material_grids_create(b.context, &settings, &m, &x), ASSAY_OK);
+        assert_int_equal(assay_material_grids_create(b.context, &settings, &n, &y), ASSAY_OK);
+        const assay_rgb base = rgb(0.2, 0.5, 0.8);
+        assert_int_equal(assay_material_grids_brdf(&x, COUNT, base, wo, scratch, p), ASSAY_OK);
+        assert_int_equal(assay_material_grids_brdf(&y, COUNT, base, wo, scratch, q), ASSAY_OK);
+        const bool same_bits = memcmp(p, q, sizeof p) == 0;
+        const bool said      = assay_material_grids_same(&m, &n);
+        assert_true(same_bits || !said);
+        assert_true(said || i % CHANGES > 1);
+        differ[i / CHANGES] += !same_bits;
+        assay_material_grids_release(&x);
+        assay_material_grids_release(&y);
+    }
+    for (int k = 0; k < 3; k++) {
+        assert_true(differ[k] >= 2);
+    }
+    close_bench(&b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(accuracy_is_that_of_the_lobe),
         cmocka_unit_test(what_cannot_be_resolved),
         cmocka_unit_test(reflects_as_the_brdf_does),
+        cmocka_unit_test(the_same_lobe),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -379,19 +379,18 @@ static void passes(void **state)
 
 /* ---- refused memory, cancelling, bad settings ---- */
 
-static assay_status quick_render(assay_context *context, assay_scene *scene)
+static assay_status quick_render(assay_context *context, assay_scene *scene, const char *method)
 {
     assay_params        *params  = NULL;
     assay_image         *image   = NULL;
     assay_render_options options = assay_render_options_default();
     options.width = options.height = 6;
-    assay_status status            = assay_method_params(context, "radiance-cache", &params);
+    assay_status status            = assay_method_params(context, method, &params);
     for (const setting *s = QUICK + 1; s->name && !status; s++) {
         status = assay_params_set(params, s->name, s->value);
     }
     status = status ? status : assay_params_set(params, "rotation_steps", "2");
-    status =
-        status ? status : assay_render(scene, "radiance-cache", params, &options, &image, NULL);
+    status = status ? status : assay_render(scene, method, params, &options, &image, NULL);
     assay_image_destroy(image);
     assay_params_destroy(params);
     return status;
@@ -408,7 +407,7 @@ static int until_success(bool refuse, assay_status expected)
         memory.asked = memory.progress_calls = 0;
         memory.fail_at                       = refuse ? n : 0;
         memory.cancel_at                     = refuse ? 0 : n;
-        const assay_status status            = quick_render(context, scene);
+        const assay_status status            = quick_render(context, scene, "radiance-cache");
         memory.fail_at = memory.cancel_at = 0;
         assert_true(memory.live == live);
         if (status != ASSAY_OK) {
@@ -431,6 +430,31 @@ static void refused_and_cancelled(void **state)
     (void)state;
     assert_true(until_success(true, ASSAY_ERR_MEMORY) > 100);
     assert_true(until_success(false, ASSAY_ERR_CANCELLED) > 20);
+}
+
+/* Two materials of one lobe and a third: grids are released as often as made. */
+static void lobes_that_are_shared(void **state)
+{
+    (void)state;
+    static const char *const colors[] = {"[0.9,0.6,0.3,1]", "[0.2,0.3,0.4,1]", "[0.9,0.6,0.3,1]"};
+    failing_memory           memory   = {0};
+    assay_context           *context  = failing_context(&memory);
+    scene_builder           *b        = scene_builder_create();
+    for (int i = 0; i < 3; i++) {
+        char text[256];
+        snprintf(text, sizeof text,
+                 "\"pbrMetallicRoughness\":{\"baseColorFactor\":%s,\"metallicFactor\":1,"
+                 "\"roughnessFactor\":%g}",
+                 colors[i], i == 1 ? 0.8 : 0.6);
+        scene_builder_sphere(b, scene_builder_material(b, text), vec3(i - 1.0, 0, 0), 0.4, 2);
+    }
+    scene_builder_camera(b, vec3(0, 0, 3), vec3(0, 0, 0), 1.0);
+    assay_scene   *scene = scene_builder_load(b, context, NULL);
+    const uint64_t live  = memory.live;
+    assert_int_equal(quick_render(context, scene, "radiance-cache"), ASSAY_OK);
+    assert_true(memory.live == live);
+    assay_scene_destroy(scene);
+    assay_context_destroy(context);
 }
 
 /* Eq. 3.30 has no angle beyond 90 degrees, and a record of a = 1.2 reaches there. */
@@ -457,6 +481,45 @@ static void rotations_that_are_undefined(void **state)
     assay_context_destroy(context);
 }
 
+/* ---- messages ---- */
+
+typedef struct {
+    const char *method;
+    int         own, others; /* lines that begin with its name, or do not */
+} speaker;
+
+static void listen(void *user, assay_log_level level, const char *line)
+{
+    speaker     *s      = user;
+    const size_t length = strlen(s->method);
+    (void)level;
+    if (strstr(line, "material '")) {
+        const bool own = strncmp(line, s->method, length) == 0 && line[length] == ':';
+        *(own ? &s->own : &s->others) += 1;
+    }
+}
+
+/* Of a material within reach and of one that is not, in the name of the method that was called. */
+static void messages_name_their_method(void **state)
+{
+    (void)state;
+    static const char *const methods[]   = {"radiance-cache", "splat"};
+    static const char *const materials[] = {
+        GGX, "\"pbrMetallicRoughness\":{\"metallicFactor\":1,\"roughnessFactor\":0}"};
+    for (int i = 0; i < 4; i++) {
+        speaker                     s       = {.method = methods[i / 2]};
+        const assay_context_options options = {.threads = 1, .log = listen, .user = &s};
+        assay_context              *context = NULL;
+        assert_int_equal(assay_context_create(&options, &context), ASSAY_OK);
+        assay_scene *scene = room(context, materials[i % 2]);
+        assert_int_equal(quick_render(context, scene, s.method), ASSAY_OK);
+        assert_int_equal(s.own, 1);
+        assert_int_equal(s.others, 0);
+        assay_scene_destroy(scene);
+        assay_context_destroy(context);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -469,7 +532,9 @@ int main(void)
         cmocka_unit_test(same_bits_for_all_threads),
         cmocka_unit_test(passes),
         cmocka_unit_test(refused_and_cancelled),
+        cmocka_unit_test(lobes_that_are_shared),
         cmocka_unit_test(rotations_that_are_undefined),
+        cmocka_unit_test(messages_name_their_method),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -286,7 +286,7 @@ static void open_light(replay *p, light *l)
         assert_true(!is_parameter(s->name) ||
                     assay_params_set(params, s->name, s->value) == ASSAY_OK);
     }
-    assert_int_equal(assay_radiance_params_read(c, params, &l->params), ASSAY_OK);
+    assert_int_equal(assay_radiance_params_read(c, "splat", params, &l->params), ASSAY_OK);
     l->settings = l->params.cache;
     assert_int_equal(assay_cache_params_read(c, params, &l->settings.records, &image), ASSAY_OK);
     assert_int_equal(assay_radiance_params_materials(c, p->scene, &l->params, &l->materials),

@@ -38,6 +38,7 @@ static const char *const UNITS[]  = {
      "",  "", "W/(m2 sr)", "W/(m2 sr)", "W/(m2 sr)",  "W/(m2 sr)", "W/(m2 sr)"};
 enum { ARRAY_COUNT = sizeof ARRAYS / sizeof ARRAYS[0], MOST = 9 * PIXELS };
 static const size_t COLUMNS[ARRAY_COUNT] = {3, 3, 1, 3, 9, 9, 3, 9, 3, 1, 3, 3, 3, 3, 3};
+enum { ALBEDO = 8, INPUTS = 11 };
 /* A pixel at record 5: its weight is 1e12, or what a float makes of that. */
 enum { STANDS = 33 };
 
@@ -121,14 +122,20 @@ static void run_stage(assay_context *context, data *d, const char *stage)
     round_all(d);
 }
 
+static void make_stages(assay_context *context, data *d)
+{
+    run_stage(context, d, "splat");
+    run_stage(context, d, "normalise");
+    run_stage(context, d, "combine");
+}
+
 static data *make_data(assay_context *context)
 {
     data *d = calloc(1, sizeof *d);
     assert_non_null(d);
     make_inputs(d);
     round_all(d);
-    run_stage(context, d, "splat");
-    run_stage(context, d, "normalise");
+    make_stages(context, d);
     memcpy(d->values[INDIRECT], d->values[RESULT], sizeof d->values[RESULT]);
     run_stage(context, d, "combine");
     return d;
@@ -140,11 +147,12 @@ static assay_verdict *verify(assay_context *context, const data *candidate, cons
     stage_case     c = stage_case_begin(context), r = stage_case_begin(context);
     assay_verdict *verdict = NULL;
     add_arrays(&c, candidate, -1);
-    add_arrays(&r, reference, -1);
+    add_arrays(&r, reference ? reference : candidate, -1);
     stage_case_finish(&c);
     stage_case_finish(&r);
     assert_int_equal(assay_verdict_create(context, "candidate", "reference", &verdict), ASSAY_OK);
-    if (assay_verify_bundle(context, c.path, r.path, NULL, precision, verdict) != ASSAY_OK) {
+    if (assay_verify_bundle(context, c.path, reference ? r.path : NULL, NULL, precision, verdict) !=
+        ASSAY_OK) {
         fail_msg("%s", assay_context_error(context));
     }
     stage_case_end(&c);
@@ -152,19 +160,28 @@ static assay_verdict *verify(assay_context *context, const data *candidate, cons
     return verdict;
 }
 
+static int count_of(const assay_verdict *verdict, const char *stage)
+{
+    int count = 0;
+    for (int i = 0; i < assay_verdict_count(verdict); i++) {
+        count += strcmp(assay_verdict_at(verdict, i).stage, stage) == 0;
+    }
+    return count;
+}
+
 static void test_right(void **state)
 {
     data          *d       = make_data(*state);
     assay_verdict *verdict = verify(*state, d, d, ASSAY_PRECISION_FLOAT);
     assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_PASS);
-    assert_int_equal(assay_verdict_count(verdict), 5);
+    assert_int_equal(assay_verdict_count(verdict), 5 + INPUTS);
     assert_string_equal(assay_verdict_at(verdict, 0).stage, "splat");
     assert_string_equal(assay_verdict_at(verdict, 2).stage, "splat-light");
     assert_string_equal(assay_verdict_at(verdict, 3).stage, "normalise");
     assert_string_equal(assay_verdict_at(verdict, 4).stage, "combine");
     assert_string_equal(assay_verdict_get(verdict, "precision"), "float");
-    assert_non_null(strstr(assay_verdict_get(verdict, "not judged"), "records/position"));
-    assert_null(strstr(assay_verdict_get(verdict, "not judged"), "splat/result"));
+    assert_int_equal(count_of(verdict, "inputs"), INPUTS);
+    assert_null(assay_verdict_get(verdict, "not judged"));
     for (int i = 0; i < 5; i++) {
         const assay_finding f = assay_verdict_at(verdict, i);
         assert_true(f.in_bounds >= 0.0 && f.in_bounds <= 1.0 && f.bound > 0.0);
@@ -175,6 +192,42 @@ static void test_right(void **state)
     verdict = verify(*state, d, d, ASSAY_PRECISION_DOUBLE);
     assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_FAIL);
     assay_verdict_destroy(verdict);
+    free(d);
+}
+
+/* Another albedo, and all that follows from it: every stage is right, on inputs that are not. */
+static void test_inputs(void **state)
+{
+    data *d = make_data(*state), *other = malloc(sizeof *other);
+    assert_non_null(other);
+    memcpy(other, d, sizeof *other);
+    other->values[ALBEDO][31] *= 1.0 + 0x1p-22;
+    round_all(other);
+    make_stages(*state, other);
+    assay_verdict      *verdict = verify(*state, other, d, ASSAY_PRECISION_FLOAT);
+    const assay_finding f       = assay_verdict_at(verdict, assay_verdict_first(verdict));
+    assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_CANNOT_TELL);
+    assert_string_equal(f.stage, "inputs");
+    assert_string_equal(f.array, "splat/albedo");
+    assert_true(f.place.row == 10 && f.place.column == 1 && f.in_bounds > 1.0);
+    assay_verdict_destroy(verdict);
+    /* Rounded to halves it is what a half has of it. */
+    verdict = verify(*state, other, d, ASSAY_PRECISION_HALF);
+    assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_PASS);
+    assay_verdict_destroy(verdict);
+    verdict = verify(*state, other, NULL, ASSAY_PRECISION_FLOAT);
+    assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_PASS);
+    assert_int_equal(count_of(verdict, "inputs"), 0);
+    assert_non_null(strstr(assay_verdict_get(verdict, "not judged"), "splat/albedo"));
+    assert_null(strstr(assay_verdict_get(verdict, "not judged"), "splat/result"));
+    assay_verdict_destroy(verdict);
+    /* What is rounded once is the reference's. */
+    memcpy(other, d, sizeof *other);
+    other->values[DIRECT][3] *= 1.0 + 0.9 * 0x1p-24;
+    verdict = verify(*state, d, other, ASSAY_PRECISION_FLOAT);
+    assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_PASS);
+    assay_verdict_destroy(verdict);
+    free(other);
     free(d);
 }
 
@@ -480,6 +533,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_right, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_inputs, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_planted, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_channels, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_other_making, context_set_up, context_tear_down),

@@ -6,7 +6,8 @@
  * The relative error (docs/conventions.md, all channels) of an image x is taken against two
  * independent images by path, a and b: the mean of (x - a)(x - b) is free of their noise.  What is
  * left of it, the standard error of that mean, is printed as the error that cannot be told from 0.
- * The noise of x itself counts. */
+ * The noise of x itself counts; where a table has two runs x and y of other random numbers, the
+ * mean of (x - a)(y - b) is free of that, too, and tells what is systematic. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +16,7 @@
 
 #include "assay/render.h"
 
-enum { CHANNELS = 3, MOST_ACCURACIES = 8, COLUMNS = 4 };
+enum { CHANNELS = 3, MOST_ACCURACIES = 8, COLUMNS = 4, RUNS = 2 };
 
 static const char *const ACCURACY[] = {"0.4", "0.2", "0.1", "0.05"};
 
@@ -33,6 +34,8 @@ typedef struct {
     bool        diffuse;   /* --force-diffuse                                             */
     int         side;      /* pixels                                                      */
     int         rows;      /* of ACCURACY                                                 */
+    int         columns;   /* the first ones of COLUMN                                    */
+    int         runs;      /* 2: with what is systematic                                  */
 } table;
 
 #define CORNELL "scenes/cornell-box/cornell-box.gltf"
@@ -42,25 +45,31 @@ typedef struct {
 
 static const table TABLES[] = {
     {"Cornell box", "irradiance-cache", CORNELL, NULL, "inf", "1024", "IrradianceIndirect", -1,
-     true, 48, 4},
-    {"Cornell box", "irradiance-cache", CORNELL, NULL, "inf", "1024", "Indirect", -1, true, 48, 4},
+     true, 48, 4, COLUMNS, 1},
+    {"Cornell box", "irradiance-cache", CORNELL, NULL, "inf", "1024", "Indirect", -1, true, 48, 4,
+     COLUMNS, 1},
     {"Cornell box, one bounce", "irradiance-cache", CORNELL, NULL, "2", "1024",
-     "IrradianceIndirect", -1, true, 48, 4},
+     "IrradianceIndirect", -1, true, 48, 4, COLUMNS, 1},
     {"Sponza, atrium", "irradiance-cache", SPONZA, "atrium", "inf", "512", "IrradianceIndirect", -1,
-     true, 32, 3},
+     true, 32, 3, COLUMNS, 1},
     {"Sponza, atrium", "irradiance-cache", SPONZA, "atrium", "inf", "512", "Indirect", -1, true, 32,
-     3},
+     3, COLUMNS, 1},
     {"Kitchen", "irradiance-cache", KITCHEN, NULL, "inf", "512", "IrradianceIndirect", -1, true, 32,
-     3},
-    {"Kitchen", "irradiance-cache", KITCHEN, NULL, "inf", "512", "Indirect", -1, true, 32, 3},
-    {"Sponza, own materials", "radiance-cache", SPONZA, "atrium", "inf", "256", "Indirect", -1,
-     false, 32, 2},
-    {"Kitchen, own materials", "radiance-cache", KITCHEN, NULL, "inf", "256", "Indirect", -1, false,
-     32, 2},
+     3, COLUMNS, 1},
+    {"Kitchen", "irradiance-cache", KITCHEN, NULL, "inf", "512", "Indirect", -1, true, 32, 3,
+     COLUMNS, 1},
+    {"Sponza, own materials, one bounce", "radiance-cache", SPONZA, "atrium", "2", "4096",
+     "Indirect", -1, false, 16, 4, 2, RUNS},
+    {"Sponza, own materials", "radiance-cache", SPONZA, "atrium", "inf", "4096", "Indirect", -1,
+     false, 16, 3, 2, RUNS},
+    {"Kitchen, own materials, one bounce", "radiance-cache", KITCHEN, NULL, "2", "4096", "Indirect",
+     -1, false, 16, 4, 2, RUNS},
+    {"Kitchen, own materials", "radiance-cache", KITCHEN, NULL, "inf", "4096", "Indirect", -1,
+     false, 16, 3, 2, RUNS},
     {"Glossy box, its wall", "radiance-cache", GLOSSY, NULL, "inf", "2048", "Indirect", 4, false,
-     48, 4},
+     48, 4, COLUMNS, 1},
     {"Glossy box, all of it", "radiance-cache", GLOSSY, NULL, "inf", "2048", "Indirect", -1, false,
-     48, 4},
+     48, 4, COLUMNS, 1},
 };
 
 enum { TABLE_COUNT = sizeof TABLES / sizeof TABLES[0] };
@@ -116,7 +125,8 @@ static assay_image *render_path(const study *s, uint64_t seed)
     return render(s, "path", params, seed, &records);
 }
 
-static assay_image *render_cached(const study *s, int row, int column, uint64_t *records_out)
+static assay_image *render_cached(const study *s, int row, int column, int run,
+                                  uint64_t *records_out)
 {
     assay_params *params = NULL;
     require(s->context, assay_method_params(s->context, s->about->method, &params));
@@ -126,7 +136,7 @@ static assay_image *render_cached(const study *s, int row, int column, uint64_t 
     set(s, params, "theta_strata", COLUMN[column].theta);
     set(s, params, "phi_strata", COLUMN[column].phi);
     set(s, params, "gradient_limit", COLUMN[column].gradient_limit);
-    return render(s, s->about->method, params, 1, records_out);
+    return render(s, s->about->method, params, run == 0 ? 1 : 4, records_out);
 }
 
 /* ---- errors ---- */
@@ -148,7 +158,8 @@ static const float *channel_of(const assay_image *image, const char *layer, int 
     return found.data.f32;
 }
 
-static verdict judge(const study *s, const table *about, const assay_image *image)
+/* Of two runs, or of one with itself. */
+static verdict judge(const study *s, const table *about, assay_image *const runs[RUNS])
 {
     assay_channel id;
     const int     pixels = about->side * about->side;
@@ -157,7 +168,8 @@ static verdict judge(const study *s, const table *about, const assay_image *imag
         exit(1);
     }
     for (int c = 0; c < CHANNELS; c++) {
-        const float *x    = channel_of(image, about->layer, c);
+        const float *x    = channel_of(runs[0], about->layer, c);
+        const float *y    = channel_of(runs[1], about->layer, c);
         const float *a    = channel_of(s->reference[0], about->layer, c);
         const float *b    = channel_of(s->reference[1], about->layer, c);
         double       mean = 0.0;
@@ -174,11 +186,13 @@ static verdict judge(const study *s, const table *about, const assay_image *imag
                     continue;
                 }
                 const double scale = truth * truth + 0.01 * mean * mean / (seen * seen);
-                const double one   = ((double)x[i] - a[i]) * ((double)x[i] - b[i]) / scale;
+                const double one   = 0.5 / scale *
+                                   (((double)x[i] - a[i]) * ((double)y[i] - b[i]) +
+                                    ((double)y[i] - a[i]) * ((double)x[i] - b[i]));
                 sum += one;
                 squares += one * one;
                 count += 1.0;
-                mean_x += x[i];
+                mean_x += 0.5 * ((double)x[i] + y[i]);
                 mean_truth += truth;
             }
         }
@@ -217,56 +231,82 @@ static bool open_study(study *s)
     return true;
 }
 
-static void print_table(const study *s, const table *about, assay_image *const images[][COLUMNS],
+typedef assay_image *pictures[MOST_ACCURACIES][COLUMNS][RUNS];
+
+static void print_cell(const study *s, const table *about, assay_image *const runs[RUNS])
+{
+    assay_image *const first[RUNS] = {runs[0], runs[0]}, *const second[RUNS] = {runs[1], runs[1]};
+    const verdict one = judge(s, about, first);
+    if (about->runs == 1) {
+        printf(" %.3f (%+.1f %%) |", one.error, 100.0 * one.bias);
+        return;
+    }
+    const verdict other = judge(s, about, second), both = judge(s, about, runs);
+    printf(" %.3f, %.3f (%+.1f %%) |",
+           sqrt(0.5 * (one.error * one.error + other.error * other.error)), both.error,
+           100.0 * both.bias);
+}
+
+static void print_table(const study *s, const table *about, pictures images,
                         uint64_t records[][COLUMNS])
 {
-    printf("%s, %s, %s\n\n| a | records, with the limit |", about->name, about->method,
-           about->layer);
-    for (int m = 0; m < COLUMNS; m++) {
+    const int last = about->columns - 1;
+    printf("%s, %s, %s%s\n\n| a | records |", about->name, about->method, about->layer,
+           about->runs == RUNS ? ": error, and what of it is systematic" : "");
+    for (int m = 0; m < about->columns; m++) {
         printf(" %s x %s%s |", COLUMN[m].theta, COLUMN[m].phi,
                strcmp(COLUMN[m].gradient_limit, "on") == 0 ? ", gradient_limit" : "");
     }
-    printf(" not told from 0 |\n|---|---|---|---|---|---|---|\n");
+    printf(" not told from 0 |\n|---|---|%.*s---|\n", 4 * about->columns, "---|---|---|---|");
     for (int k = 0; k < s->rows; k++) {
-        verdict v = {0};
-        printf("| %s | %llu, %llu |", s->accuracy[k], (unsigned long long)records[k][2],
-               (unsigned long long)records[k][COLUMNS - 1]);
-        for (int m = 0; m < COLUMNS; m++) {
-            v = judge(s, about, images[k][m]);
-            printf(" %.3f (%+.1f %%) |", v.error, 100.0 * v.bias);
+        printf("| %s | %llu, %llu |", s->accuracy[k],
+               (unsigned long long)records[k][last == COLUMNS - 1 ? 2 : 0],
+               (unsigned long long)records[k][last]);
+        for (int m = 0; m < about->columns; m++) {
+            print_cell(s, about, images[k][m]);
         }
-        printf(" %.3f |\n", v.unseen);
+        printf(" %.3f |\n", judge(s, about, images[k][last]).unseen);
     }
     printf("\n");
     fflush(stdout);
 }
 
-/* All tables of the first one's scene, method and bounces. */
-static void work_on(study *s, const table *first, const char *wanted)
+static void destroy_all(const study *s, pictures images)
 {
-    assay_image *images[MOST_ACCURACIES][COLUMNS]  = {{NULL}};
-    uint64_t     records[MOST_ACCURACIES][COLUMNS] = {{0}};
-    if (!open_study(s)) {
-        return;
-    }
     for (int k = 0; k < s->rows; k++) {
-        for (int m = 0; m < COLUMNS; m++) {
-            images[k][m] = render_cached(s, k, m, &records[k][m]);
-        }
-    }
-    for (const table *t = first; t < TABLES + TABLE_COUNT; t++) {
-        if (same_scene(t, first) && strstr(t->name, wanted)) {
-            print_table(s, t, (assay_image *const(*)[COLUMNS])images, records);
-        }
-    }
-    for (int k = 0; k < s->rows; k++) {
-        for (int m = 0; m < COLUMNS; m++) {
-            assay_image_destroy(images[k][m]);
+        for (int m = 0; m < s->about->columns; m++) {
+            for (int r = 0; r < s->about->runs; r++) {
+                assay_image_destroy(images[k][m][r]);
+            }
         }
     }
     assay_image_destroy(s->reference[0]);
     assay_image_destroy(s->reference[1]);
     assay_scene_destroy(s->scene);
+}
+
+/* All tables of the first one's scene, method and bounces. */
+static void work_on(study *s, const table *first, const char *wanted)
+{
+    pictures images                            = {{{NULL}}};
+    uint64_t records[MOST_ACCURACIES][COLUMNS] = {{0}};
+    if (!open_study(s)) {
+        return;
+    }
+    for (int k = 0; k < s->rows; k++) {
+        for (int m = 0; m < first->columns; m++) {
+            for (int r = 0; r < first->runs; r++) {
+                images[k][m][r] = render_cached(s, k, m, r, &records[k][m]);
+            }
+            images[k][m][1] = images[k][m][first->runs - 1];
+        }
+    }
+    for (const table *t = first; t < TABLES + TABLE_COUNT; t++) {
+        if (same_scene(t, first) && strstr(t->name, wanted)) {
+            print_table(s, t, images, records);
+        }
+    }
+    destroy_all(s, images);
 }
 
 int main(int count, char **argv)

@@ -1,11 +1,12 @@
 #!/bin/sh
 # check_arm64.sh - builds for aarch64 with Debian's cross compiler and arm64 packages unpacked under
-# build/arm64, runs under qemu-user, and compares the pixels with those of this machine.  The system's
-# own architecture list and packages stay as they are, but for the cross compiler and qemu-user.
+# build/arm64, runs under qemu-user, and compares the pixels with those of this machine, and some whole
+# bundles with the golden hashes.  The system's own architecture list and packages stay as they are,
+# but for the cross compiler and qemu-user.
 set -eu
 base=$PWD/build/arm64
 root=$base/root
-packages="libembree-dev libopenexr-dev libtinygltf-dev libsleef-dev librandom123-dev libpng-dev
+packages="libembree-dev libopenexr-dev libtinygltf-dev libsleef-dev librandom123-dev libpng-dev zlib1g-dev
           libjpeg-dev libcjson-dev libmd-dev libc6-dev libstdc++-12-dev"
 
 missing=
@@ -90,5 +91,8 @@ if [ -z "${ARM64_SCENES:-}" ]; then
         --glossy-accuracy 0.8 --bounds published
     compare rasterised colonnade --method irradiance-cache --gather raster --raster-size 16 \
         --secondary direct --shadow map --shadow-size 64 --a 0.9
+    make -s build/release/tests/golden/golden_arrays
+    ASSAY_BIN=$base/assay BUILD=build/release tests/tools/golden.sh check sky path-animated \
+        irradiance-cache-levels radiance-cache-digon splat-published-glossy || failed=1
 fi
 exit $failed

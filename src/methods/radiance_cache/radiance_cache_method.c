@@ -9,9 +9,9 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/numerics.h"
+#include "methods/cache_pair.h"
 #include "methods/cache_params.h"
 #include "methods/cache_session.h"
-#include "methods/radiance_params.h"
 
 static const assay_param_desc PARAMS[] = {ASSAY_CACHE_PARAMS,
                                           ASSAY_CACHE_PASSES_PARAM,
@@ -32,16 +32,12 @@ typedef struct {
 } desk;
 
 typedef struct {
-    assay_context                *context;
-    const assay_world            *world;
-    assay_radiance_params         params;
-    assay_radiance_cache_settings settings;
-    assay_cached_image_settings   image;
-    assay_irradiance_cache       *irradiance;
-    assay_radiance_cache         *radiance; /* NULL: no material is within reach */
-    assay_cache_session           session;
-    glossy_materials              materials;
-    desk                         *desks;
+    assay_context              *context;
+    const assay_world          *world;
+    assay_cache_pair            pair;
+    assay_cached_image_settings image;
+    assay_cache_session         session;
+    desk                       *desks;
     /* of a wave */
     uint32_t    *limits;
     made_so_far *made;
@@ -57,21 +53,12 @@ static void release_desks(cache_state *s)
     assay_release(s->context, s->desks);
 }
 
-static void drop_caches(cache_state *s)
-{
-    assay_radiance_cache_destroy(s->radiance);
-    assay_irradiance_cache_destroy(s->irradiance);
-    s->radiance   = NULL;
-    s->irradiance = NULL;
-}
-
 static void destroy(void *state)
 {
     cache_state *s = state;
     if (s) {
         release_desks(s);
-        glossy_materials_release(&s->materials);
-        drop_caches(s);
+        assay_cache_pair_release(&s->pair);
         assay_cache_session_release(&s->session);
         assay_release(s->context, s->limits);
         assay_release(s->context, s->made);
@@ -86,11 +73,8 @@ static assay_status create(assay_context *context, const assay_params *params, v
         return assay_fail_memory(context, "the radiance cache");
     }
     state->context      = context;
-    assay_status status = assay_radiance_params_read(context, params, &state->params);
-    state->settings     = state->params.cache;
-    status =
-        status ? status
-               : assay_cache_params_read(context, params, &state->settings.records, &state->image);
+    assay_status status = assay_cache_pair_read(context, assay_method_radiance_cache.name, params,
+                                                &state->pair, &state->image);
     status = status ? status : assay_cache_session_create(context, params, &state->session);
     if (status != ASSAY_OK) {
         destroy(state);
@@ -105,7 +89,7 @@ static assay_status create(assay_context *context, const assay_params *params, v
 static assay_status make_desks(cache_state *s)
 {
     const size_t threads = (size_t)assay_context_threads(s->context);
-    const size_t count   = assay_basis_count(assay_radiance_cache_basis(s->radiance));
+    const size_t count   = assay_basis_count(assay_radiance_cache_basis(s->pair.radiance));
     s->desks             = assay_allocate(s->context, threads, sizeof *s->desks);
     bool have            = s->desks != NULL;
     for (size_t i = 0; have && i < threads; i++) {
@@ -118,32 +102,17 @@ static assay_status make_desks(cache_state *s)
 
 static assay_cache_set caches_of(const cache_state *s)
 {
-    return (assay_cache_set){&s->settings.records, &s->settings, s->irradiance, s->radiance};
+    return (assay_cache_set){&s->pair.params.cache.records, &s->pair.params.cache,
+                             s->pair.irradiance, s->pair.radiance};
 }
 
-static assay_status make_caches(cache_state *s, const assay_frame *frame)
-{
-    assay_status status = assay_irradiance_cache_create(frame->world, &s->settings.records,
-                                                        frame->seed, &s->irradiance);
-    if (status != ASSAY_OK || !s->materials.any) {
-        return status;
-    }
-    status = assay_radiance_cache_create(s->context, s->irradiance, &s->settings, &s->radiance);
-    return status || s->desks ? status : make_desks(s);
-}
-
-/* Materials are the same for all frames. */
 static assay_status prepare(void *state, const assay_frame *frame)
 {
     cache_state *s      = state;
     s->world            = frame->world;
-    assay_status status = s->materials.grids
-                              ? ASSAY_OK
-                              : assay_radiance_params_materials(s->context, frame->world->scene,
-                                                                &s->params, &s->materials);
-    if (status == ASSAY_OK && frame->frames_before == 0) {
-        drop_caches(s);
-        status = make_caches(s, frame);
+    assay_status status = assay_cache_pair_prepare(&s->pair, frame);
+    if (status == ASSAY_OK && s->pair.radiance && !s->desks) {
+        status = make_desks(s);
     }
     const assay_cache_set caches = caches_of(s);
     return status ? status : assay_cache_session_begin(&s->session, frame, &caches);
@@ -153,7 +122,8 @@ static assay_status prepare(void *state, const assay_frame *frame)
 
 static const assay_material_grids *grids_at(const cache_state *s, const assay_cached_point *point)
 {
-    return s->radiance && point->hit ? glossy_materials_at(&s->materials, &point->vertex) : NULL;
+    return s->pair.radiance && point->hit ? glossy_materials_at(&s->pair.materials, &point->vertex)
+                                          : NULL;
 }
 
 static assay_status make_room(cache_state *s, size_t count)
@@ -177,16 +147,16 @@ static assay_status fill(void *user, const char *phase, uint64_t before, uint64_
     status = status ? status : assay_cache_session_ask(&s->session, count, points);
     asked  = s->session.points;
     status = status ? status
-                    : assay_irradiance_cache_fill(s->irradiance, phase, before, total, count, asked,
-                                                  limits_out);
-    if (status != ASSAY_OK || !s->radiance) {
+                    : assay_irradiance_cache_fill(s->pair.irradiance, phase, before, total, count,
+                                                  asked, limits_out);
+    if (status != ASSAY_OK || !s->pair.radiance) {
         return status;
     }
     for (size_t i = 0; i < count; i++) {
         asked[i].wanted = grids_at(s, &points[i]) != NULL;
     }
-    status = assay_irradiance_cache_fill(assay_radiance_cache_records(s->radiance), phase, before,
-                                         total, count, asked, s->limits);
+    status = assay_irradiance_cache_fill(assay_radiance_cache_records(s->pair.radiance), phase,
+                                         before, total, count, asked, s->limits);
     for (size_t i = 0; i < count && status == ASSAY_OK; i++) {
         s->made[i] = (made_so_far){limits_out[i], s->limits[i]};
         limits_out[i] += s->limits[i];
@@ -198,7 +168,7 @@ static assay_status fill(void *user, const char *phase, uint64_t before, uint64_
 /* From the number that the driver keeps back to both; UINT32_MAX: all. */
 static made_so_far made_within(const cache_state *s, uint32_t limit)
 {
-    if (limit == UINT32_MAX || !s->radiance) {
+    if (limit == UINT32_MAX || !s->pair.radiance) {
         return (made_so_far){limit, limit};
     }
     size_t low = 0, high = s->made_count;
@@ -219,8 +189,8 @@ static assay_status irradiance_within(const cache_state *s, const assay_cached_p
                                       uint32_t limit, int worker, assay_rgb *irradiance_out)
 {
     const assay_gather_site site = assay_gather_site_of(&point->vertex);
-    return assay_irradiance_cache_look_up(s->irradiance, site.position, site.frame.z, limit, worker,
-                                          irradiance_out);
+    return assay_irradiance_cache_look_up(s->pair.irradiance, site.position, site.frame.z, limit,
+                                          worker, irradiance_out);
 }
 
 static assay_status irradiance(void *user, const assay_cached_point *point, uint32_t limit,
@@ -235,11 +205,12 @@ static assay_status gloss(const cache_state *s, const assay_material_grids *grid
                           const assay_cached_point *point, uint32_t limit, int worker,
                           assay_rgb *gloss_out, bool *found_out)
 {
-    const desk        *d      = &s->desks[worker];
-    const assay_frame3 frame  = assay_material_frame(&point->vertex);
-    const size_t       count  = assay_basis_count(assay_radiance_cache_basis(s->radiance));
-    const assay_status status = assay_radiance_cache_look_up(
-        s->radiance, point->vertex.surface.position, &frame, limit, worker, d->light, found_out);
+    const desk        *d     = &s->desks[worker];
+    const assay_frame3 frame = assay_material_frame(&point->vertex);
+    const size_t       count = assay_basis_count(assay_radiance_cache_basis(s->pair.radiance));
+    const assay_status status =
+        assay_radiance_cache_look_up(s->pair.radiance, point->vertex.surface.position, &frame,
+                                     limit, worker, d->light, found_out);
     return status || !*found_out ? status
                                  : assay_material_grids_reflect(grids, count, &point->vertex,
                                                                 d->light, d->scratch, gloss_out);
@@ -254,7 +225,7 @@ static assay_status cached_radiance(const cache_state *s, const assay_cached_poi
     const made_so_far           made    = made_within(s, limit);
     const assay_material_grids *grids   = grids_at(s, point);
     const assay_rgb             lambert = assay_cached_point_lambert(point);
-    const bool                  clamp   = s->settings.records.rules.clamp_negative;
+    const bool                  clamp   = s->pair.params.cache.records.rules.clamp_negative;
     assay_rgb                   e = rgb_grey(0.0), rest = rgb_grey(0.0);
     assay_status                status = ASSAY_OK;
     bool                        found  = false;
@@ -283,8 +254,8 @@ static assay_status radiance(void *user, const assay_cached_point *point, uint32
         return status;
     }
     if (!found) {
-        sum = rgb_add(sum, assay_cached_point_rest(s->world, &s->settings.records.path, point,
-                                                   random, counts));
+        sum = rgb_add(sum, assay_cached_point_rest(s->world, &s->pair.params.cache.records.path,
+                                                   point, random, counts));
     }
     *radiance_out = sum;
     return ASSAY_OK;
@@ -298,11 +269,11 @@ static assay_status picture(void *user, const assay_cached_point *point, uint32_
     const assay_cache_debug *debug = &s->session.debug;
     const made_so_far        made  = made_within(s, limit);
     if (!grids_at(s, point)) {
-        return assay_cache_debug_paint(debug, s->irradiance, point, made.irradiance, worker, color,
-                                       picture_out);
+        return assay_cache_debug_paint(debug, s->pair.irradiance, point, made.irradiance, worker,
+                                       color, picture_out);
     }
     if (debug->kind != ASSAY_CACHE_DEBUG_ERROR) {
-        return assay_cache_debug_paint(debug, assay_radiance_cache_records(s->radiance), point,
+        return assay_cache_debug_paint(debug, assay_radiance_cache_records(s->pair.radiance), point,
                                        made.radiance, worker, color, picture_out);
     }
     assay_rgb          light  = rgb_grey(0.0);
@@ -317,12 +288,12 @@ static assay_status picture(void *user, const assay_cached_point *point, uint32_
 static void report(const cache_state *s)
 {
     assay_irradiance_cache *radiance =
-        s->radiance ? assay_radiance_cache_records(s->radiance) : NULL;
-    const uint64_t nearest = assay_irradiance_cache_unserved(s->irradiance);
+        s->pair.radiance ? assay_radiance_cache_records(s->pair.radiance) : NULL;
+    const uint64_t nearest = assay_irradiance_cache_unserved(s->pair.irradiance);
     const uint64_t paths   = radiance ? assay_irradiance_cache_unserved(radiance) : 0;
     assay_inform(s->context, ASSAY_LOG_INFO,
                  "radiance-cache: %u irradiance and %u radiance records",
-                 assay_record_store_count(assay_irradiance_cache_store(s->irradiance)),
+                 assay_record_store_count(assay_irradiance_cache_store(s->pair.irradiance)),
                  radiance ? assay_record_store_count(assay_irradiance_cache_store(radiance)) : 0);
     if (nearest > 0 || paths > 0) {
         assay_inform(s->context, ASSAY_LOG_WARNING,

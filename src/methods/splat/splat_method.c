@@ -3,8 +3,8 @@
 
 #include "core/alloc.h"
 #include "core/context.h"
+#include "methods/cache_pair.h"
 #include "methods/cache_params.h"
-#include "methods/radiance_params.h"
 #include "methods/splat/splat_image.h"
 
 static const assay_param_desc PARAMS[] = {
@@ -37,32 +37,19 @@ static const assay_param_desc PARAMS[] = {
 };
 
 typedef struct {
-    assay_context                *context;
-    assay_radiance_params         params;
-    assay_radiance_cache_settings settings;
-    assay_cached_image_settings   image_settings;
-    assay_cache_session           session;
-    splat_image                   image;
-    glossy_materials              materials;
-    assay_irradiance_cache       *irradiance;
-    assay_radiance_cache         *radiance; /* NULL: no material is within reach */
+    assay_context              *context;
+    assay_cache_pair            pair;
+    assay_cached_image_settings image_settings;
+    assay_cache_session         session;
+    splat_image                 image;
 } splat_state;
-
-static void drop_caches(splat_state *s)
-{
-    assay_radiance_cache_destroy(s->radiance);
-    assay_irradiance_cache_destroy(s->irradiance);
-    s->radiance   = NULL;
-    s->irradiance = NULL;
-}
 
 static void destroy(void *state)
 {
     splat_state *s = state;
     if (s) {
         splat_image_close(&s->image);
-        drop_caches(s);
-        glossy_materials_release(&s->materials);
+        assay_cache_pair_release(&s->pair);
         assay_cache_session_release(&s->session);
         assay_release(s->context, s);
     }
@@ -70,18 +57,18 @@ static void destroy(void *state)
 
 static void read_own_params(const assay_params *params, splat_state *s)
 {
-    s->image.uncovered        = (splat_uncovered)assay_params_choice(params, "uncovered");
-    s->image.centres          = assay_params_choice(params, "gbuffer") == 1;
-    s->image_settings.centres = s->image.centres;
-    s->settings.widest_a      = assay_params_real(params, "splat_a");
-    s->image.rules            = (splat_rules){
-                   .variant     = (splat_variant)assay_params_choice(params, "variant"),
-                   .bounds      = (assay_splat_bounds_kind)assay_params_choice(params, "bounds"),
-                   .accuracy    = assay_params_real(params, "splat_a"),
-                   .max_records = s->settings.records.max_records,
-                   .max_new     = (uint32_t)assay_params_int(params, "max_new_records"),
-                   .again       = s->settings.records.neighbour_clamp,
-                   .batch       = (uint32_t)assay_params_int(params, "dump_batch"),
+    s->image.uncovered            = (splat_uncovered)assay_params_choice(params, "uncovered");
+    s->image.centres              = assay_params_choice(params, "gbuffer") == 1;
+    s->image_settings.centres     = s->image.centres;
+    s->pair.params.cache.widest_a = assay_params_real(params, "splat_a");
+    s->image.rules                = (splat_rules){
+                       .variant     = (splat_variant)assay_params_choice(params, "variant"),
+                       .bounds      = (assay_splat_bounds_kind)assay_params_choice(params, "bounds"),
+                       .accuracy    = assay_params_real(params, "splat_a"),
+                       .max_records = s->pair.params.cache.records.max_records,
+                       .max_new     = (uint32_t)assay_params_int(params, "max_new_records"),
+                       .again       = s->pair.params.cache.records.neighbour_clamp,
+                       .batch       = (uint32_t)assay_params_int(params, "dump_batch"),
     };
 }
 
@@ -92,11 +79,8 @@ static assay_status create(assay_context *context, const assay_params *params, v
         return assay_fail_memory(context, "splatting");
     }
     s->context          = context;
-    assay_status status = assay_radiance_params_read(context, params, &s->params);
-    s->settings         = s->params.cache;
-    status =
-        status ? status
-               : assay_cache_params_read(context, params, &s->settings.records, &s->image_settings);
+    assay_status status = assay_cache_pair_read(context, assay_method_splat.name, params, &s->pair,
+                                                &s->image_settings);
     status = status ? status : assay_cache_session_create(context, params, &s->session);
     if (status != ASSAY_OK) {
         destroy(s);
@@ -111,31 +95,15 @@ static assay_status create(assay_context *context, const assay_params *params, v
  */
 static assay_cache_set caches_of(const splat_state *s)
 {
-    return (assay_cache_set){&s->settings.records, s->radiance ? &s->settings : NULL, s->irradiance,
-                             s->radiance};
+    return (assay_cache_set){&s->pair.params.cache.records,
+                             s->pair.radiance ? &s->pair.params.cache : NULL, s->pair.irradiance,
+                             s->pair.radiance};
 }
 
-static assay_status make_caches(splat_state *s, const assay_frame *frame)
-{
-    const assay_status status = assay_irradiance_cache_create(frame->world, &s->settings.records,
-                                                              frame->seed, &s->irradiance);
-    return status || !s->materials.any
-               ? status
-               : assay_radiance_cache_create(s->context, s->irradiance, &s->settings, &s->radiance);
-}
-
-/* Materials are the same for all frames. */
 static assay_status prepare(void *state, const assay_frame *frame)
 {
-    splat_state *s      = state;
-    assay_status status = s->materials.grids
-                              ? ASSAY_OK
-                              : assay_radiance_params_materials(s->context, frame->world->scene,
-                                                                &s->params, &s->materials);
-    if (status == ASSAY_OK && frame->frames_before == 0) {
-        drop_caches(s);
-        status = make_caches(s, frame);
-    }
+    splat_state          *s      = state;
+    const assay_status    status = assay_cache_pair_prepare(&s->pair, frame);
     const assay_cache_set caches = caches_of(s);
     return status ? status : assay_cache_session_begin(&s->session, frame, &caches);
 }
@@ -170,9 +138,9 @@ static assay_status render(void *state, const assay_frame *frame, assay_film *fi
     s->image.context             = s->context;
     s->image.frame               = frame;
     s->image.caches              = &caches;
-    s->image.materials           = &s->materials;
+    s->image.materials           = &s->pair.materials;
     s->image.session             = &s->session;
-    s->image.path                = &s->settings.records.path;
+    s->image.path                = &s->pair.params.cache.records.path;
     assay_status status          = splat_image_open(&s->image);
     if (status == ASSAY_OK) {
         const assay_cached_light light = splat_image_light(&s->image);

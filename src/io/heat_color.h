@@ -1,6 +1,6 @@
-/* heat_map.h - the colour scale of differences. */
-#ifndef ASSAY_IO_HEAT_MAP_H
-#define ASSAY_IO_HEAT_MAP_H
+/* heat_color.h - the colour scale of differences. */
+#ifndef ASSAY_IO_HEAT_COLOR_H
+#define ASSAY_IO_HEAT_COLOR_H
 
 #include "assay/types.h"
 

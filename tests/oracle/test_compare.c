@@ -12,7 +12,7 @@
 
 #include "assay/compare.h"
 #include "core/random.h"
-#include "io/heat_map.h"
+#include "io/heat_color.h"
 #include "support/failing_context.h"
 #include "support/near.h"
 
@@ -283,11 +283,25 @@ static void the_scale_is_ordered_by_lightness(void **state)
     assert_near(assay_heat_color(INFINITY).b, 1.0, 1e-3);
 }
 
+static void check_numbers(const assay_image *a, const assay_image *b, const double *errors)
+{
+    assay_image  *map = NULL;
+    assay_channel channel;
+    assert_int_equal(assay_image_relative_error(a, b, &map), ASSAY_OK);
+    assert_true(assay_image_find_channel(map, "RelativeError", &channel));
+    for (int i = 0; i < 4; i++) {
+        assert_true(channel.data.f32[i] == (float)errors[i] ||
+                    fabs((double)channel.data.f32[i] - errors[i]) < 1e-6);
+    }
+    assay_image_destroy(map);
+}
+
 /* Pixel i of the map must be the colour of the error at full scale 2. */
 static void check_map(const assay_image *a, const assay_image *b, const double *errors)
 {
     static const char *const names[] = {"R", "G", "B"};
     assay_image             *map     = NULL;
+    check_numbers(a, b, errors);
     assert_int_equal(assay_image_heat_map(a, b, 2.0, &map), ASSAY_OK);
     assert_int_equal(assay_image_channel_count(map), 3);
     for (int i = 0; i < 4; i++) {

@@ -1,45 +1,15 @@
 /* heat_map.c - where two images differ, as colours.
  *
- * The scale is a path through CIELAB (white D65) whose lightness L* grows evenly from 0 to 100, so
- * that equal steps look equal and the order survives in grey:
- *
- *     L* = 100 t,  hue = 300 + 155 t degrees,  chroma = 260 t (1 - t)
- *
- * black, violet, red, orange, yellow, white.  The chroma is a little below the largest that the
- * sRGB gamut allows along that path (4 * 67.9 t (1 - t), reached at t = 0.35). */
+ * Invariant: a pixel of the map depends on that pixel of the two images and on the means of their
+ * channels alone. */
 #include <math.h>
-#include <string.h>
 
 #include "assay/compare.h"
 #include "core/alloc.h"
 #include "core/context.h"
-#include "core/numerics.h"
-#include "io/compare_channels.h"
-#include "io/heat_map.h"
-
-/* Inverse of CIELAB's f. */
-static double from_lab(double t)
-{
-    const double knee = 6.0 / 29.0;
-    return t > knee ? t * t * t : 3.0 * knee * knee * (t - 4.0 / 29.0);
-}
-
-static double clamp_unit(double x) { return !(x > 0.0) ? 0.0 : x < 1.0 ? x : 1.0; }
-
-assay_rgb assay_heat_color(double t)
-{
-    const double       at     = clamp_unit(t);
-    const assay_sincos hue    = assay_sincos_turns((300.0 + 155.0 * at) / 360.0);
-    const double       chroma = 260.0 * at * (1.0 - at);
-    const double       fy     = (100.0 * at + 16.0) / 116.0;
-    const double       x      = 0.95047 * from_lab(fy + chroma * hue.cos / 500.0);
-    const double       y      = from_lab(fy);
-    const double       z      = 1.08883 * from_lab(fy - chroma * hue.sin / 200.0);
-    /* XYZ to linear sRGB (IEC 61966-2-1). */
-    return (assay_rgb){clamp_unit(3.2404542 * x - 1.5371385 * y - 0.4985314 * z),
-                       clamp_unit(-0.9692660 * x + 1.8760108 * y + 0.0415560 * z),
-                       clamp_unit(0.0556434 * x - 0.2040259 * y + 1.0572252 * z)};
-}
+#include "io/heat_color.h"
+#include "io/image_access.h"
+#include "oracle/channel_mean.h"
 
 /* The channels to look at: pairs of a and b. */
 typedef struct {
@@ -102,7 +72,23 @@ static double pixel_error(const channel_pairs *list, size_t pixel)
     return sum / (double)list->count;
 }
 
-static assay_status draw(const channel_pairs *list, double full_scale, assay_image *map)
+/* Where the errors of a map go: one channel as they are, or three as colours. */
+typedef assay_status (*error_writer)(const channel_pairs *list, double full_scale,
+                                     assay_image *map);
+
+static assay_status write_numbers(const channel_pairs *list, double full_scale, assay_image *map)
+{
+    assay_channel      out;
+    const assay_status status =
+        assay_image_add_channel(map, "RelativeError", ASSAY_CHANNEL_FLOAT, &out);
+    (void)full_scale;
+    for (size_t i = 0; status == ASSAY_OK && i < assay_image_pixels(map); i++) {
+        out.data.f32[i] = (float)pixel_error(list, i);
+    }
+    return status;
+}
+
+static assay_status write_colors(const channel_pairs *list, double full_scale, assay_image *map)
 {
     static const char *const names[3] = {"R", "G", "B"};
     assay_channel            out[3];
@@ -122,16 +108,11 @@ static assay_status draw(const channel_pairs *list, double full_scale, assay_ima
     return ASSAY_OK;
 }
 
-assay_status assay_image_heat_map(const assay_image *a, const assay_image *b, double full_scale,
-                                  assay_image **map_out)
+static assay_status make_map(const assay_image *a, const assay_image *b, error_writer writer,
+                             double full_scale, assay_image **map_out)
 {
     assay_context *context = assay_image_context(a);
-    if (!(full_scale > 0.0) || isinf(full_scale)) {
-        return assay_fail(context, ASSAY_ERR_ARGUMENT,
-                          "the full scale of a heat map is %g; it must be finite and > 0",
-                          full_scale);
-    }
-    assay_status status = assay_images_check_sizes(a, b);
+    assay_status   status  = assay_images_check_sizes(a, b);
     if (status != ASSAY_OK) {
         return status;
     }
@@ -142,7 +123,7 @@ assay_status assay_image_heat_map(const assay_image *a, const assay_image *b, do
         status = assay_image_create(context, assay_image_width(a), assay_image_height(a), &map);
     }
     if (status == ASSAY_OK) {
-        status = draw(&list, full_scale, map);
+        status = writer(&list, full_scale, map);
     }
     assay_release(context, list.pairs);
     assay_release(context, list.floors);
@@ -152,4 +133,21 @@ assay_status assay_image_heat_map(const assay_image *a, const assay_image *b, do
     }
     *map_out = map;
     return ASSAY_OK;
+}
+
+assay_status assay_image_relative_error(const assay_image *a, const assay_image *b,
+                                        assay_image **map_out)
+{
+    return make_map(a, b, write_numbers, 1.0, map_out);
+}
+
+assay_status assay_image_heat_map(const assay_image *a, const assay_image *b, double full_scale,
+                                  assay_image **map_out)
+{
+    if (!(full_scale > 0.0) || isinf(full_scale)) {
+        return assay_fail(assay_image_context(a), ASSAY_ERR_ARGUMENT,
+                          "the full scale of a heat map is %g; it must be finite and > 0",
+                          full_scale);
+    }
+    return make_map(a, b, write_colors, full_scale, map_out);
 }

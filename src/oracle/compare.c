@@ -1,7 +1,7 @@
 /* compare.c - differences of two images, channel by channel.
  *
- * Invariant: sums run in pixel order and are compensated ([neumaier74]), so a result is the same on
- * every machine and exact to a few units whatever the size of the image. */
+ * Invariant: a channel belongs to one worker, its sums run in pixel order and are compensated, so a
+ * result is the same on every machine and exact to a few units whatever the size of the image. */
 #include "assay/compare.h"
 
 #include <math.h>
@@ -10,7 +10,11 @@
 
 #include "core/alloc.h"
 #include "core/context.h"
-#include "io/compare_channels.h"
+#include "core/parallel.h"
+#include "io/image_access.h"
+#include "math/running_sum.h"
+#include "oracle/channel_mean.h"
+#include "oracle/picture.h"
 
 struct assay_comparison {
     assay_context            *context;
@@ -19,47 +23,18 @@ struct assay_comparison {
     bool                      identical;
 };
 
-typedef struct {
-    double sum, lost;
-} accumulator;
-
-static void add(accumulator *a, double x)
-{
-    const double next = a->sum + x;
-    a->lost += fabs(a->sum) >= fabs(x) ? (a->sum - next) + x : (x - next) + a->sum;
-    a->sum = next;
-}
-
-/* NaN over nothing; what is not finite stays so. */
-static double mean(const accumulator *a, uint64_t count)
-{
-    const double total = isfinite(a->sum) ? a->sum + a->lost : a->sum;
-    return count ? total / (double)count : NAN;
-}
-
-size_t assay_image_pixels(const assay_image *image)
-{
-    return (size_t)assay_image_width(image) * (size_t)assay_image_height(image);
-}
-
-double assay_channel_value(const assay_channel *channel, size_t pixel)
-{
-    return channel->type == ASSAY_CHANNEL_UINT ? channel->data.u32[pixel]
-                                               : channel->data.f32[pixel];
-}
-
 double assay_channel_mean(const assay_channel *a, const assay_channel *b, size_t pixels)
 {
-    accumulator sum   = {0};
+    running_sum sum   = {0};
     uint64_t    count = 0;
     for (size_t i = 0; i < pixels; i++) {
         const double x = assay_channel_value(a, i);
         if (isfinite(x) && isfinite(assay_channel_value(b, i))) {
-            add(&sum, x);
+            running_sum_add(&sum, x);
             count++;
         }
     }
-    return mean(&sum, count);
+    return running_sum_mean(&sum, count);
 }
 
 static bool differ(const assay_channel *a, const assay_channel *b, size_t pixel)
@@ -85,18 +60,18 @@ static bool find_variances(const assay_image *a, const assay_image *b, const cha
 static double z_rms(const assay_channel *a, const assay_channel *b, const assay_channel *variances,
                     size_t pixels)
 {
-    accumulator squares = {0};
+    running_sum squares = {0};
     uint64_t    count   = 0;
     for (size_t i = 0; i < pixels; i++) {
         const double d = assay_channel_value(b, i) - assay_channel_value(a, i);
         const double variance =
             assay_channel_value(&variances[0], i) + assay_channel_value(&variances[1], i);
         if (isfinite(d) && isfinite(variance) && variance > 0.0) {
-            add(&squares, d * d / variance);
+            running_sum_add(&squares, d * d / variance);
             count++;
         }
     }
-    return sqrt(mean(&squares, count));
+    return sqrt(running_sum_mean(&squares, count));
 }
 
 /* x / scale, where nothing of nothing is nothing. */
@@ -106,7 +81,7 @@ static void compare_pixels(const assay_channel *a, const assay_channel *b, size_
                            assay_channel_difference *out)
 {
     const double floor_squared = 1e-2 * out->mean_a * out->mean_a;
-    accumulator  squares = {0}, relative = {0}, errors = {0};
+    running_sum  squares = {0}, relative = {0}, to_scale = {0}, errors = {0};
     out->max_x = out->max_y = -1;
     for (size_t i = 0; i < pixels; i++) {
         const double x = assay_channel_value(a, i), y = assay_channel_value(b, i);
@@ -116,9 +91,10 @@ static void compare_pixels(const assay_channel *a, const assay_channel *b, size_
             continue;
         }
         const double d = y - x;
-        add(&errors, d);
-        add(&squares, d * d);
-        add(&relative, ratio(d * d, x * x + floor_squared));
+        running_sum_add(&errors, d);
+        running_sum_add(&squares, d * d);
+        running_sum_add(&relative, d * d / (x * x + ASSAY_RELATIVE_MSE_FLOOR));
+        running_sum_add(&to_scale, ratio(d * d, x * x + floor_squared));
         if (out->max_x < 0 || fabs(d) > out->max_abs) {
             out->max_abs = fabs(d);
             out->max_x   = (int)(i % (size_t)width);
@@ -126,25 +102,36 @@ static void compare_pixels(const assay_channel *a, const assay_channel *b, size_
         }
         out->pixels++;
     }
-    out->mean_error    = mean(&errors, out->pixels);
-    out->rmse          = sqrt(mean(&squares, out->pixels));
-    out->relative_rmse = sqrt(mean(&relative, out->pixels));
+    out->mean_error    = running_sum_mean(&errors, out->pixels);
+    out->mse           = running_sum_mean(&squares, out->pixels);
+    out->rmse          = sqrt(out->mse);
+    out->relative_mse  = running_sum_mean(&relative, out->pixels);
+    out->relative_rmse = sqrt(running_sum_mean(&to_scale, out->pixels));
 }
 
-static assay_channel_difference compare_channel(const assay_image *image_a,
-                                                const assay_image *image_b, const assay_channel *a,
-                                                const assay_channel *b)
+typedef struct {
+    const assay_image        *a, *b;
+    assay_channel_difference *channels; /* their names are set */
+} compare_job;
+
+static assay_status compare_one(void *user, uint64_t index, int worker)
 {
-    const size_t             pixels = assay_image_pixels(image_a);
-    assay_channel            variances[2];
-    assay_channel_difference out = {.channel = a->name, .z_rms = NAN};
-    out.mean_a                   = assay_channel_mean(a, b, pixels);
-    out.mean_b                   = assay_channel_mean(b, a, pixels);
-    compare_pixels(a, b, pixels, assay_image_width(image_a), &out);
-    if (find_variances(image_a, image_b, a->name, variances)) {
-        out.z_rms = z_rms(a, b, variances, pixels);
+    const compare_job        *job    = user;
+    assay_channel_difference *out    = &job->channels[index];
+    const size_t              pixels = assay_image_pixels(job->a);
+    assay_channel             a, b, variances[2];
+    (void)worker;
+    if (!assay_image_find_channel(job->a, out->channel, &a) ||
+        !assay_image_find_channel(job->b, out->channel, &b)) {
+        return ASSAY_ERR_INTERNAL;
     }
-    return out;
+    out->mean_a = assay_channel_mean(&a, &b, pixels);
+    out->mean_b = assay_channel_mean(&b, &a, pixels);
+    out->z_rms  = find_variances(job->a, job->b, out->channel, variances)
+                      ? z_rms(&a, &b, variances, pixels)
+                      : NAN;
+    compare_pixels(&a, &b, pixels, assay_image_width(job->a), out);
+    return ASSAY_OK;
 }
 
 static bool identical_images(const assay_image *a, const assay_image *b)
@@ -163,22 +150,11 @@ static bool identical_images(const assay_image *a, const assay_image *b)
     return true;
 }
 
-assay_status assay_images_check_sizes(const assay_image *a, const assay_image *b)
-{
-    if (assay_image_width(a) == assay_image_width(b) &&
-        assay_image_height(a) == assay_image_height(b)) {
-        return ASSAY_OK;
-    }
-    return assay_fail(assay_image_context(a), ASSAY_ERR_ARGUMENT,
-                      "the images differ in size: %d x %d and %d x %d pixels", assay_image_width(a),
-                      assay_image_height(a), assay_image_width(b), assay_image_height(b));
-}
-
 assay_status assay_image_compare(const assay_image *a, const assay_image *b,
                                  assay_comparison **comparison_out)
 {
-    assay_context     *context = assay_image_context(a);
-    const assay_status status  = assay_images_check_sizes(a, b);
+    assay_context *context = assay_image_context(a);
+    assay_status   status  = assay_images_check_sizes(a, b);
     if (status != ASSAY_OK) {
         return status;
     }
@@ -194,15 +170,20 @@ assay_status assay_image_compare(const assay_image *a, const assay_image *b,
         return assay_fail_memory(context, "a comparison");
     }
     for (int i = 0; i < channels; i++) {
-        const assay_channel x = assay_image_channel_at(a, i);
-        assay_channel       y;
-        if (assay_image_find_channel(b, x.name, &y)) {
-            comparison->channels[comparison->count++] = compare_channel(a, b, &x, &y);
+        const char *name = assay_image_channel_at(a, i).name;
+        if (assay_image_find_channel(b, name, NULL)) {
+            comparison->channels[comparison->count++].channel = name;
         }
     }
     if (comparison->count == 0) {
         assay_comparison_destroy(comparison);
         return assay_fail(context, ASSAY_ERR_ARGUMENT, "the images have no channel in common");
+    }
+    compare_job job = {.a = a, .b = b, .channels = comparison->channels};
+    status = assay_parallel_for(context, "compare", (uint64_t)comparison->count, compare_one, &job);
+    if (status != ASSAY_OK) {
+        assay_comparison_destroy(comparison);
+        return status;
     }
     comparison->identical = identical_images(a, b);
     *comparison_out       = comparison;
@@ -227,4 +208,39 @@ assay_channel_difference assay_comparison_at(const assay_comparison *comparison,
 bool assay_comparison_identical(const assay_comparison *comparison)
 {
     return comparison->identical;
+}
+
+static const assay_channel_difference *find_difference(const assay_comparison *comparison,
+                                                       const char             *name)
+{
+    for (int i = 0; i < comparison->count; i++) {
+        if (strcmp(comparison->channels[i].channel, name) == 0) {
+            return &comparison->channels[i];
+        }
+    }
+    return NULL;
+}
+
+bool assay_comparison_color(const assay_comparison *comparison, const char *layer,
+                            assay_color_difference *difference_out)
+{
+    assay_color_difference out           = {0};
+    double                 relative_rmse = 0.0;
+    for (int c = 0; c < 3; c++) {
+        char name[ASSAY_LAYER_NAME];
+        assay_layer_channel(layer, c, name);
+        const assay_channel_difference *d = find_difference(comparison, name);
+        if (!d) {
+            return false;
+        }
+        out.mean_a += d->mean_a / 3.0;
+        out.mean_error += d->mean_error / 3.0;
+        out.mse += d->mse / 3.0;
+        out.relative_mse += d->relative_mse / 3.0;
+        relative_rmse += d->relative_rmse * d->relative_rmse / 3.0;
+    }
+    out.rmse          = sqrt(out.mse);
+    out.relative_rmse = sqrt(relative_rmse);
+    *difference_out   = out;
+    return true;
 }

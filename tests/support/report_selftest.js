@@ -1,0 +1,230 @@
+/* report_selftest.js - put behind the scripts of a report's page by tests/cli/test_report.sh: works
+ * the controls as a person would and says on the console what does not follow. */
+(async () => {
+  const wrong = [];
+  const check = (good, what) => { if (!good) wrong.push(what); };
+  const $ = (id) => document.getElementById(id);
+  const all = (selector) => [...document.querySelectorAll(selector)];
+  const wait = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
+  const press = (key, target = document.body, more = {}) =>
+    target.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true, ...more }));
+
+  /* Until nothing is painted any more; two frames more for what only moves. */
+  async function settled() {
+    for (let quiet = 0, last = ""; quiet < 3;) {
+      await wait(15);
+      const now = `${document.body.dataset.painted} ${document.body.dataset.thumbnails} ${$("pixel").textContent}`;
+      quiet = now === last ? quiet + 1 : 0;
+      last = now;
+    }
+  }
+  const reader = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+  function pixels(canvas) {
+    reader.canvas.width = canvas.width;
+    reader.canvas.height = canvas.height;
+    reader.drawImage(canvas, 0, 0);
+    return reader.getImageData(0, 0, canvas.width, canvas.height).data;
+  }
+  const sum = (canvas) => pixels(canvas).reduce((total, value) => total + value, 0);
+  const print = (canvas) => pixels(canvas).reduce((hash, value) => Math.imul(hash ^ value, 16777619) >>> 0, 2166136261);
+  const isName = (text) => typeof text === "string" && text.trim() !== "";
+  const number = (text) => parseFloat(text.replace("−", "-").replace("e−", "e-"));
+
+  async function started() {
+    for (let i = 0; i < 400 && !(document.body.dataset.painted && document.body.dataset.thumbnails); i++) await wait(25);
+    check(document.body.dataset.painted, "the pictures are painted");
+  }
+
+  function texts() {
+    check(isName($("title").textContent) && document.title === `${$("title").textContent} - assay report`, "the title is the title");
+    check(all("h1 *, #subtitle *, .thumb-name > :not(kbd), td script, td img, th img").length === 0, "no text became an element");
+    check(all("main *, header *").every((element) => ![...element.childNodes].some((node) =>
+      node.nodeType === 3 && /\b(null|undefined|NaN|\[object)/.test(node.data))), "nothing that is missing is written out");
+    check(globalThis.hacked === undefined, "no text was run");
+    const ids = all("[id]").map((element) => element.id);
+    check(new Set(ids).size === ids.length, "every id is there once");
+    check(performance.getEntriesByType("resource").length === 0, "nothing was asked for");
+  }
+
+  function names() {
+    for (const element of all("button, input, select, [role=slider]")) {
+      const name = element.getAttribute("aria-label") || element.textContent || [...(element.labels ?? [])].map((label) => label.textContent).join("");
+      check(isName(name), `${element.tagName} #${element.id} has a name`);
+    }
+    for (const svg of all("#histograms svg, #curves svg")) check(isName(svg.getAttribute("aria-label")), "a chart has a name");
+    for (const id of ["stage", "divider"]) check($(id).tabIndex === 0, `${id} can be reached by keyboard`);
+    check(all("[tabindex]").every((element) => element.tabIndex <= 0), "the order of Tab is that of the page");
+  }
+
+  async function divider() {
+    const handle = $("divider"), now = () => +handle.getAttribute("aria-valuenow"), clip = () => getComputedStyle($("pane-right")).clipPath;
+    const before = now(), clipped = clip(), moved = handle.getBoundingClientRect().left;
+    press("ArrowRight", handle);
+    check(now() > before, "the arrow moves the divider");
+    check(clip() !== clipped, "the picture is cut at the divider");
+    check(handle.getBoundingClientRect().left > moved, "the handle goes with it");
+    press("Home", handle);
+    check(now() === 0, "Home takes it to the left");
+    press("End", handle);
+    check(now() === 100, "End takes it to the right");
+    const box = $("stage").getBoundingClientRect(), at = (x) => ({ clientX: box.left + x * box.width, clientY: box.top + 50, button: 0, pointerId: 1, pointerType: "mouse", bubbles: true });
+    $("stage").setPointerCapture = () => {};
+    handle.dispatchEvent(new PointerEvent("pointerdown", at(0.9)));
+    $("stage").dispatchEvent(new PointerEvent("pointermove", at(0.5)));
+    $("stage").dispatchEvent(new PointerEvent("pointerup", at(0.5)));
+    check(Math.abs(now() - 50) < 3, "the pointer drags it");
+  }
+
+  async function pictures() {
+    const right = $("canvas-right"), seen = new Set(), radios = all("input[name=picture]");
+    for (const radio of radios) {
+      radio.click();
+      await settled();
+      seen.add(print(right));
+      check($("legend").hidden === ["reference", "candidate"].includes(radio.value), `${radio.value}: a map has a scale`);
+    }
+    check(seen.size === radios.length, "every picture looks different");
+    press("2");
+    await settled();
+    check(all("input[name=picture]")[1].checked, "the key 2 shows the candidate");
+    const plain = print(right);
+    press("4");
+    await settled();
+    const map = print(right);
+    check(map !== plain, "the key 4 shows a map");
+    press(".");
+    await settled();
+    check(print(right) !== map, "the scale changes the map");
+    press(",");
+    press("2");
+    await settled();
+    check(print(right) === plain, "and back");
+  }
+
+  async function exposure() {
+    const left = $("canvas-left"), before = print(left), light = sum(left), thumb = print(all("#pictures canvas")[0]);
+    press("[");
+    press("[");
+    await settled();
+    check(sum(left) < light, "less exposure is darker");
+    check(print(all("#pictures canvas")[0]) !== thumb, "in the small pictures, too");
+    $("exposure-reset").click();
+    await settled();
+    check(print(left) === before, "and back");
+  }
+
+  async function views() {
+    const mode = () => $("stage").dataset.mode, seen = [mode()];
+    for (let i = 0; i < 2; i++) {
+      press("v");
+      seen.push(mode());
+    }
+    check(seen.join() === "slider,sides,single", "v goes through the views");
+    const hidden = () => getComputedStyle($("pane-right")).visibility === "hidden";
+    const first = hidden();
+    press(" ");
+    check(hidden() !== first, "Space shows the other picture");
+    press("v");
+    const before = $("canvas-left").style.transform;
+    press("+");
+    check($("canvas-left").style.transform !== before, "+ zooms");
+    press("0");
+    check($("canvas-left").style.transform === before, "0 fits again");
+  }
+
+  /* What the page decodes against what was computed of the images themselves. */
+  async function values() {
+    for (const row of all("#channel-table tbody tr")) {
+      const cells = [...row.cells], channel = "RGB".indexOf(cells[0].textContent.trim()), most = number(cells[7].textContent);
+      if (!(most > 0)) continue;
+      cells[8].querySelector("button").click();
+      await settled();
+      check($("pixel").textContent === `Pixel ${cells[8].textContent}`, "the place is inspected");
+      const [a, b] = [...$("values").tBodies[0].rows].slice(0, 2).map((r) => number(r.cells[channel + 1].textContent));
+      const off = 0.004 * (Math.abs(a) + Math.abs(b)) + 0.006 * most;
+      check(Math.abs(Math.abs(b - a) - most) <= off, `${cells[0].textContent}: ${a} and ${b} differ by ${most}`);
+    }
+    $("stage").focus();
+    const before = $("pixel").textContent;
+    press("ArrowUp", $("stage"));
+    press("ArrowLeft", $("stage"));
+    await settled();
+    check($("pixel").textContent !== before, "arrows go from pixel to pixel");
+    press("0");
+    all("input[name=mode]")[0].click();
+  }
+
+  function charts() {
+    for (const svg of all("#histograms figure:not(:has(.nothing)) svg")) check(svg.querySelectorAll("rect, path").length > 1, "a histogram is drawn");
+    check(all("#histograms figure").length === 3, "three histograms");
+    if ($("convergence").hidden) return;
+    const before = $("curves").innerHTML;
+    check(all("#curves circle").length >= 2, "errors are drawn against cost");
+    const others = all("input[name=cost]:not(:checked)");
+    if (others.length === 0) return;
+    others[0].click();
+    check($("curves").innerHTML !== before, "against another cost they are elsewhere");
+  }
+
+  async function theme() {
+    const paper = () => getComputedStyle(document.body).backgroundColor;
+    press("t");
+    const light = paper();
+    press("t");
+    check(light !== paper(), "light and dark differ");
+    press("t");
+  }
+
+  async function records() {
+    if ($("records-row").hidden) return;
+    const before = print($("overlay"));
+    press("r");
+    check($("records").checked && print($("overlay")) !== before, "r draws the records");
+    press("r");
+    check(print($("overlay")) === before, "r takes them away");
+  }
+
+  async function candidates() {
+    const rows = all("#candidates tbody tr");
+    if (rows.length < 2) return;
+    const before = $("caption-right").textContent, histogram = $("histograms").innerHTML;
+    press("n");
+    await settled();
+    check($("caption-right").textContent !== before, "n shows the next candidate");
+    check($("histograms").innerHTML !== histogram, "with its histograms");
+    check(rows[1].hasAttribute("data-shown"), "and marks its row");
+    press("p");
+    await settled();
+    check($("caption-right").textContent === before, "p goes back");
+  }
+
+  function verdict() {
+    if ($("verdict").hidden) return;
+    const link = document.querySelector("#verdict a");
+    check(!link || document.querySelector(link.getAttribute("href"))?.hasAttribute("data-first"), "the link goes to the first failure");
+    check(all("#findings tbody tr[id]").length > 0, "the stages are listed");
+  }
+
+  function help() {
+    press("?");
+    check($("help").open, "? opens the list of keys");
+    $("help").close();
+  }
+
+  function parameters() {
+    const rows = () => all("#attributes tbody tr").length, few = rows();
+    $("only-different").click();
+    check(rows() > few, "all parameters are more than those that differ");
+    $("only-different").click();
+  }
+
+  const name = decodeURIComponent(location.pathname).replace(/.*\//, "");
+  try {
+    await started();
+    await settled();
+    for (const step of [texts, names, charts, divider, pictures, exposure, views, values, theme, records, candidates, verdict, help, parameters]) await step();
+  } catch (error) {
+    wrong.push(String(error));
+  }
+  console.log(`SELFTEST ${name} ${wrong.length ? "fails: " + [...new Set(wrong)].join("; ") : "passes"}`);
+})();
