@@ -27,7 +27,8 @@ run render $glossy_box -q -m splat $shiny \
 went_well
 result $? "a glossy one, too"
 
-# Runs backend PROGRAM for KIND and verifies what it made, an image also against $scene; leaves $code, $failing (stages that do not pass).
+# Runs backend PROGRAM for KIND and verifies what it made, an image also against $scene; leaves $code
+# and $failing (stages that do not pass).
 verify() { # PROGRAM KIND REFERENCE
     case $2 in
     image) given=$3 against="--reference $3 --scene $scene" ;;

@@ -94,7 +94,7 @@ cmp -s $box "$folder/scene.gltf"
 result $? "the scene is as it was"
 refuses "the points as output" 2 "is an input" $probe -o "$folder/points.npy"
 refuses "an image as heat map" 2 "is an input" diff "$folder/a.exr" "$folder/a.exr" \
-    --heat-map "$folder/./a.exr" --scale 1
+    --heat-map "$folder/./a.exr"
 
 # ---- bundles ----
 mkdir "$folder/there"
