@@ -243,6 +243,6 @@ irradiance_bounds irradiance_bounds_of(const rounding *r, const assay_hemisphere
     }
     const double nearest = assay_hemisphere_nearest(hemisphere);
     b.mean               = bound_mean(r, hemisphere, mean);
-    b.nearest            = isinf(nearest) ? 0.0 : r->given * nearest;
+    b.nearest            = isinf(nearest) ? 0.0 : given_error(r, nearest);
     return b;
 }

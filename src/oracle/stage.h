@@ -20,6 +20,7 @@ typedef struct {
     const double *values;                  /* rows of columns                              */
     size_t        rows, columns;
     double        roundoff; /* unit roundoff of the type that its file holds               */
+    double        tiny;     /* and what a number may have lost to underflow there          */
     const char   *unit;     /* borrowed from the manifest */
 } stage_table;
 
@@ -88,8 +89,11 @@ const char *stage_manifest_text(const assay_bundle_reader *bundle, const char *n
 /* The listed name that a stage's name stands for: with '#' that of the largest number. */
 bool stage_find_name(const assay_bundle_reader *bundle, const char *pattern,
                      char name[ASSAY_BUNDLE_NAME]);
-/* Unit roundoff of an array's type. */
+/* Of a candidate's operations, and of what it takes in. */
+rounding stage_rounding_of(assay_precision precision);
+/* Unit roundoff of an array's type, and what a number may lose to underflow when it is stored. */
 double stage_roundoff_of(const assay_bundle_entry *entry);
+double stage_tiny_of(const assay_bundle_entry *entry);
 
 /* Whether the bundle has what the stage needs. */
 bool stage_can_run(const oracle_stage *stage, const assay_bundle_reader *bundle);

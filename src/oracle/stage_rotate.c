@@ -76,7 +76,7 @@ static void bound_sh(const stage_run *run, const assay_basis *basis, const doubl
             assay_basis_function(basis, j, &band, &m);
             if (band == l) {
                 squared += in[j] * in[j];
-                carried += fabs(matrix[i * count + j] * in[j]) * r->given;
+                carried += fabs(matrix[i * count + j]) * given_error(r, in[j]);
             }
         }
         const double size = 2.0 * l + 1.0;

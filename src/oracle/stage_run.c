@@ -126,6 +126,14 @@ double stage_roundoff_of(const assay_bundle_entry *entry)
                                                   : 0x1p-53;
 }
 
+double stage_tiny_of(const assay_bundle_entry *entry)
+{
+    return strcmp(entry->dtype, "float16") == 0   ? 0x1p-25
+           : strcmp(entry->dtype, "float32") == 0 ? 0x1p-149
+           : strcmp(entry->dtype, "uint32") == 0  ? 0.0
+                                                  : 0x1p-1074;
+}
+
 assay_status stage_fail_value(const stage_run *run, int input, size_t row, size_t column,
                               const char *why)
 {
@@ -191,6 +199,7 @@ static assay_status read_input(stage_run *run, int input)
     t->rows     = assay_array_rows(run->tables[input]);
     t->columns  = assay_array_columns(run->tables[input]);
     t->roundoff = stage_roundoff_of(&entry);
+    t->tiny     = stage_tiny_of(&entry);
     t->unit     = entry.unit;
     if (desc->channels && t->columns != words_in(desc->channels)) {
         return stage_fail_columns(run, input, words_in(desc->channels));
@@ -250,15 +259,23 @@ void stage_output_unknown(const stage_output *output)
 
 /* ---- running ---- */
 
-/* Inputs are rounded once: to the candidate's precision, or when they were stored. */
-static rounding rounding_of(const stage_run *run, assay_precision precision)
+rounding stage_rounding_of(assay_precision precision)
 {
     static const double roundoffs[] = {0x1p-11, 0x1p-24, 0x1p-53};
     static const double tinies[]    = {0x1p-25, 0x1p-126, 0x1p-1022};
-    rounding            r = {.u = roundoffs[precision] + 0x1p-53, .tiny = tinies[precision]};
-    r.given               = roundoffs[precision];
+    return (rounding){.u          = roundoffs[precision] + 0x1p-53,
+                      .tiny       = tinies[precision],
+                      .given      = roundoffs[precision],
+                      .given_tiny = tinies[precision]};
+}
+
+/* Inputs are rounded once: to the candidate's precision, or when they were stored. */
+static rounding rounding_of(const stage_run *run, assay_precision precision)
+{
+    rounding r = stage_rounding_of(precision);
     for (int i = 0; i < STAGE_MOST_ARRAYS; i++) {
-        r.given = fmax(r.given, run->in[i].roundoff);
+        r.given      = fmax(r.given, run->in[i].roundoff);
+        r.given_tiny = fmax(r.given_tiny, run->in[i].tiny);
     }
     return r;
 }

@@ -21,6 +21,7 @@ typedef struct {
     double tiny;  /* what an operation may lose to underflow                                      */
     double given; /* relative error of every number that is given: it is rounded once when it is
                      stored or taken in                                                          */
+    double given_tiny; /* what a given number may lose to underflow then                         */
 } rounding;
 
 static inline tracked tracked_rounded(const rounding *r, double v, double e)
@@ -28,10 +29,16 @@ static inline tracked tracked_rounded(const rounding *r, double v, double e)
     return (tracked){v, e + r->u * (fabs(v) + e) + r->tiny};
 }
 
+/* How far a number that is given may be from v: nothing is rounded by more than itself. */
+static inline double given_error(const rounding *r, double v)
+{
+    return r->given * fabs(v) + fmin(r->given_tiny, fabs(v));
+}
+
 /* A number that is given. */
 static inline tracked tracked_given(const rounding *r, double v)
 {
-    return (tracked){v, r->given * fabs(v)};
+    return (tracked){v, given_error(r, v)};
 }
 
 /* A constant, or a number of a table, rounded once. */

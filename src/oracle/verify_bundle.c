@@ -25,7 +25,7 @@ typedef struct {
 typedef struct {
     const stage_output *out;
     const double       *values; /* the candidate's */
-    double              stored; /* unit roundoff of their type, where it is coarser; else 0 */
+    rounding            stored; /* `given`: how their type rounds, where it is coarser; else 0 */
     size_t              count, unknown, vacuous, beyond, worst;
     double              worst_in_bounds;
 } comparison;
@@ -33,7 +33,7 @@ typedef struct {
 static double bound_at(const comparison *c, size_t i)
 {
     const double b = c->out->bounds[i];
-    return b + c->stored * (fabs(c->out->values[i]) + b);
+    return b + given_error(&c->stored, fabs(c->out->values[i]) + b);
 }
 
 static double in_bounds_at(const comparison *c, size_t i)
@@ -180,10 +180,9 @@ static assay_status check_finite(const verification *v, const stage_output *out,
 static assay_status judge_array(const verification *v, const stage_run *run,
                                 const stage_output *out)
 {
-    static const double roundoffs[] = {0x1p-11, 0x1p-24, 0x1p-53};
-    assay_array        *table       = NULL;
-    assay_bundle_entry  entry       = {.name = NULL};
-    assay_status        status      = assay_bundle_entry_of(v->candidate, out->name, &entry);
+    assay_array       *table  = NULL;
+    assay_bundle_entry entry  = {.name = NULL};
+    assay_status       status = assay_bundle_entry_of(v->candidate, out->name, &entry);
     if (status == ASSAY_OK && strcmp(entry.unit, out->unit) != 0) {
         return assay_fail(v->context, ASSAY_ERR_FORMAT,
                           "%s: bundle: '%s' is in '%.40s', not in '%s'",
@@ -203,9 +202,10 @@ static assay_status judge_array(const verification *v, const stage_run *run,
     status = status ? status : check_finite(v, out, table);
     if (status == ASSAY_OK) {
         const double stored = stage_roundoff_of(&entry);
-        comparison   c      = {.out    = out,
-                               .values = assay_array_values(table),
-                               .stored = stored > roundoffs[v->precision] ? stored : 0.0};
+        comparison   c      = {.out = out, .values = assay_array_values(table)};
+        if (stored > stage_rounding_of(v->precision).given) {
+            c.stored = (rounding){.given = stored, .given_tiny = stage_tiny_of(&entry)};
+        }
         compare(&c);
         /* Where nothing is known the array stays among those that were not judged. */
         if (c.count == 0 || c.unknown < c.count) {

@@ -56,15 +56,15 @@ typedef struct {
 } comparison;
 
 /* A number that is rounded once, from what the reference's file holds. */
-static void compare(const assay_array *mine, const assay_array *theirs, double roundoff,
+static void compare(const assay_array *mine, const assay_array *theirs, const rounding *once,
                     comparison *c)
 {
     const double *x = assay_array_values(theirs), *r = assay_array_values(mine);
     c->values = assay_array_rows(mine) * assay_array_columns(mine);
     for (size_t i = 0; i < c->values; i++) {
-        const double bound = roundoff * fabs(r[i]) * (1.0 + 0x1p-20) + 0x1p-149;
+        const double bound = given_error(once, r[i]) * (1.0 + 0x1p-20);
         const double away  = x[i] == r[i] || (isnan(x[i]) && isnan(r[i])) ? 0.0 : fabs(x[i] - r[i]);
-        const double share = isfinite(away) && isfinite(bound) ? away / bound : 1e300;
+        const double share = isfinite(away) && away <= 1e300 * bound ? away / bound : 1e300;
         if (i == 0 || (away > 0.0 && share > c->in_bounds)) {
             *c = (comparison){i, c->values, x[i], r[i], bound, away > 0.0 ? share : 0.0};
         }
@@ -96,16 +96,17 @@ static assay_status add_finding(assay_verdict *verdict, const char *array, const
 
 static assay_status judge(const assay_bundle_reader *candidate,
                           const assay_bundle_reader *reference, const assay_bundle_entry *entry,
-                          const char *channels, double roundoff, assay_verdict *verdict)
+                          const char *channels, rounding once, assay_verdict *verdict)
 {
     assay_array *mine = NULL, *theirs = NULL;
     comparison   c      = {.in_bounds = 0.0};
     assay_status status = assay_bundle_read_array(reference, entry->name, channels, &mine);
     status = status ? status : assay_bundle_read_array(candidate, entry->name, channels, &theirs);
     if (status == ASSAY_OK) {
-        roundoff = fmax(roundoff, stage_roundoff_of(entry));
+        once.given      = fmax(once.given, stage_roundoff_of(entry));
+        once.given_tiny = fmax(once.given_tiny, stage_tiny_of(entry));
         if (assay_array_rows(mine) == assay_array_rows(theirs)) {
-            compare(mine, theirs, roundoff, &c);
+            compare(mine, theirs, &once, &c);
         } else {
             c.in_bounds = 1e300;
         }
@@ -120,16 +121,15 @@ assay_status verify_inputs(const assay_bundle_reader *candidate,
                            const assay_bundle_reader *reference, assay_precision precision,
                            assay_verdict *verdict)
 {
-    static const double roundoffs[] = {0x1p-11, 0x1p-24, 0x1p-53};
-    assay_status        status      = ASSAY_OK;
+    const rounding once   = stage_rounding_of(precision);
+    assay_status   status = ASSAY_OK;
     for (int i = 0; i < assay_bundle_count(candidate) && status == ASSAY_OK; i++) {
         assay_bundle_entry entry;
         status                         = assay_bundle_entry_at(candidate, i, &entry);
         const assay_stage_array *input = status ? NULL : reader_of(verdict, candidate, entry.name);
         if (input && !verify_is_judged(verdict, entry.name) &&
             assay_bundle_has(reference, entry.name)) {
-            status =
-                judge(candidate, reference, &entry, input->channels, roundoffs[precision], verdict);
+            status = judge(candidate, reference, &entry, input->channels, once, verdict);
         }
     }
     return status;

@@ -231,6 +231,33 @@ static void test_inputs(void **state)
     free(d);
 }
 
+/* 1e-6 is between 16 and 17 of a half's smallest steps; pixel 7 sees no indirect light. */
+static void test_small_halves(void **state)
+{
+    enum { AT = 3 * 7 };
+    static const struct {
+        double             taken, total;
+        assay_verdict_kind kind;
+    } cases[] = {{1e-6, 17.0, ASSAY_VERDICT_PASS},
+                 {17.0 * 0x1p-24, 17.0, ASSAY_VERDICT_PASS},
+                 {1e-6, 18.0, ASSAY_VERDICT_FAIL},
+                 {18.0 * 0x1p-24, 18.0, ASSAY_VERDICT_CANNOT_TELL}};
+    data *d = make_data(*state), *mine = malloc(sizeof *mine);
+    assert_non_null(mine);
+    assert_true(d->values[INDIRECT][AT] == 0.0);
+    d->values[DIRECT][AT] = 1e-6;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        memcpy(mine, d, sizeof *mine);
+        mine->values[DIRECT][AT] = cases[i].taken;
+        mine->values[TOTAL][AT]  = cases[i].total * 0x1p-24;
+        assay_verdict *verdict   = verify(*state, mine, d, ASSAY_PRECISION_HALF);
+        assert_int_equal(assay_verdict_whole(verdict), cases[i].kind);
+        assay_verdict_destroy(verdict);
+    }
+    free(mine);
+    free(d);
+}
+
 /* Something planted in one array, and where it must be found. */
 typedef struct {
     const char *name;
@@ -534,6 +561,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_right, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_inputs, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_small_halves, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_planted, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_channels, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_other_making, context_set_up, context_tear_down),
