@@ -252,6 +252,18 @@ static void print_findings(const assay_verdict *verdict)
     }
 }
 
+static void print_unseen(const assay_verdict *verdict)
+{
+    const char *unjudged = assay_verdict_get(verdict, "not judged");
+    const char *missing  = assay_verdict_get(verdict, "missing");
+    if (unjudged) {
+        printf("Not judged: %s.\n", unjudged);
+    }
+    if (missing) {
+        printf("Missing, of the reference's arrays: %s.\n", missing);
+    }
+}
+
 static assay_status report(cli_console *console, assay_context *context, const verify_request *r,
                            const assay_verdict *verdict)
 {
@@ -264,8 +276,8 @@ static assay_status report(cli_console *console, assay_context *context, const v
     if (text) {
         status = write_output(console, context, verdict, assay_verdict_paragraph, "-");
     }
-    if (status == ASSAY_OK && text && assay_verdict_get(verdict, "not judged")) {
-        printf("Not judged: %s.\n", assay_verdict_get(verdict, "not judged"));
+    if (status == ASSAY_OK && text) {
+        print_unseen(verdict);
     }
     if (status == ASSAY_OK && r->annotations) {
         status = write_output(console, context, verdict, assay_verdict_annotations, "-");

@@ -53,6 +53,9 @@ static assay_status read_manifest(assay_bundle_reader *reader)
     if (!cJSON_IsNumber(version) || version->valuedouble != 1.0) {
         return fail_format(reader, "its version is not 1");
     }
+    if (!cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(reader->manifest, "arrays"))) {
+        return fail_format(reader, "manifest.json: 'arrays' is not a list");
+    }
     return ASSAY_OK;
 }
 
@@ -187,6 +190,8 @@ static assay_status describe(const assay_bundle_reader *reader, const cJSON *jso
                           : !entry.dtype ? "it has no 'dtype'"
                           : !read_shape(cJSON_GetObjectItemCaseSensitive(json, "shape"), &entry)
                               ? "its 'shape' is not one to three sizes"
+                          : !entry.digest && cJSON_HasObjectItem(json, "sha256")
+                              ? "its 'sha256' is not a text"
                               : NULL;
     if (what) {
         assay_fail(reader->context, ASSAY_ERR_FORMAT, "%s: bundle: manifest.json, array '%s': %s",

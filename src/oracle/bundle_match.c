@@ -69,8 +69,7 @@ assay_status bundle_match_making(assay_context *context, const assay_bundle_read
 
 /* ---- arrays ---- */
 
-/* The reference's entry of the same name, or of another batch of the same kind. */
-static bool find_like(const assay_bundle_reader *reference, const char *name,
+bool bundle_find_like(const assay_bundle_reader *reference, const char *name,
                       assay_bundle_entry *entry_out)
 {
     static const char batch[] = "/batch.";
@@ -135,7 +134,7 @@ static assay_status match_entry(assay_context *context, const assay_bundle_reade
     if (!reference) {
         return ASSAY_OK;
     }
-    if (!find_like(reference, entry->name, &like)) {
+    if (!bundle_find_like(reference, entry->name, &like)) {
         return fail_array(context, candidate, entry, "is not an array of the reference");
     }
     if (strcmp(entry->unit, like.unit) != 0) {
@@ -177,7 +176,7 @@ static assay_status count_like(const assay_bundle_reader *reference, const char 
 {
     assay_bundle_entry like   = {.name = NULL};
     assay_array       *table  = NULL;
-    assay_status       status = find_like(reference, name, &like)
+    assay_status       status = bundle_find_like(reference, name, &like)
                                     ? assay_bundle_read_array(reference, like.name, NULL, &table)
                                     : ASSAY_OK;
     if (status == ASSAY_OK) {

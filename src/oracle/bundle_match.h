@@ -9,6 +9,10 @@
 assay_status bundle_match_making(assay_context *context, const assay_bundle_reader *candidate,
                                  const assay_bundle_reader *reference);
 
+/* The bundle's entry of the same name, or of batch 0 of the same kind; false without. */
+bool bundle_find_like(const assay_bundle_reader *reference, const char *name,
+                      assay_bundle_entry *entry_out);
+
 /* Arrays: each is one of the reference's, in its unit, with as many columns, of a type that is
  * known, in a file that is what the manifest lists, without a NaN where the reference has none.
  * reference NULL: of a known type, in such a file; what a stage reads it judges itself.

@@ -89,6 +89,9 @@ const char *stage_manifest_text(const assay_bundle_reader *bundle, const char *n
 /* The listed name that a stage's name stands for: with '#' that of the largest number. */
 bool stage_find_name(const assay_bundle_reader *bundle, const char *pattern,
                      char name[ASSAY_BUNDLE_NAME]);
+/* Likewise of an input: without the last batch, where .../batch_end counts them, there is none. */
+bool stage_find_input(const assay_bundle_reader *bundle, const char *pattern,
+                      char name[ASSAY_BUNDLE_NAME]);
 /* Of a candidate's operations, and of what it takes in. */
 rounding stage_rounding_of(assay_precision precision);
 /* Unit roundoff of an array's type, and what a number may lose to underflow when it is stored. */

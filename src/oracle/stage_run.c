@@ -107,11 +107,34 @@ bool stage_find_name(const assay_bundle_reader *bundle, const char *pattern,
     return mark ? last >= 0 : assay_bundle_has(bundle, name);
 }
 
+/* Whether the largest number of a '#' is that of the last batch, where the bundle says how many
+ * there are: sums of an earlier one are not what a result comes from. */
+static bool is_last_batch(const assay_bundle_reader *bundle, const char *pattern, const char *name)
+{
+    static const char  batch[] = "/batch.#";
+    const char        *at      = strstr(pattern, batch);
+    char               ends[ASSAY_BUNDLE_NAME];
+    assay_bundle_entry entry = {.name = NULL};
+    if (!at) {
+        return true;
+    }
+    snprintf(ends, sizeof ends, "%.*s/batch_end", (int)(at - pattern), pattern);
+    return !assay_bundle_has(bundle, ends) ||
+           assay_bundle_entry_of(bundle, ends, &entry) != ASSAY_OK || entry.shape[0] == 0 ||
+           number_of(pattern, strchr(pattern, '#'), name) == (long)entry.shape[0] - 1;
+}
+
+bool stage_find_input(const assay_bundle_reader *bundle, const char *pattern,
+                      char name[ASSAY_BUNDLE_NAME])
+{
+    return stage_find_name(bundle, pattern, name) && is_last_batch(bundle, pattern, name);
+}
+
 bool stage_can_run(const oracle_stage *stage, const assay_bundle_reader *bundle)
 {
     for (const assay_stage_array *input = stage->info.inputs; input->name; input++) {
         char name[ASSAY_BUNDLE_NAME];
-        if (!input->optional && !stage_find_name(bundle, input->name, name)) {
+        if (!input->optional && !stage_find_input(bundle, input->name, name)) {
             return false;
         }
     }
@@ -175,7 +198,7 @@ static assay_status read_input(stage_run *run, int input)
     const assay_stage_array *desc  = &run->stage->info.inputs[input];
     stage_table             *t     = &run->in[input];
     assay_bundle_entry       entry = {.name = NULL};
-    if (!stage_find_name(run->bundle, desc->name, t->name)) {
+    if (!stage_find_input(run->bundle, desc->name, t->name)) {
         return desc->optional
                    ? ASSAY_OK
                    : assay_fail(run->context, ASSAY_ERR_FORMAT,

@@ -108,21 +108,61 @@ static size_t count(const assay_verdict *v, const char *stage, int kind)
     return found;
 }
 
-static void add_counts(assay_text_builder *text, const assay_verdict *v, const char *stage)
+static void add_counts(assay_text_builder *text, const assay_verdict *v, const char *stage,
+                       size_t skipped)
 {
-    assay_text_add(text, " tests=\"%zu\" failures=\"%zu\" errors=\"%zu\"", count(v, stage, -1),
-                   count(v, stage, ASSAY_VERDICT_FAIL), count(v, stage, ASSAY_VERDICT_CANNOT_TELL));
+    assay_text_add(text, " tests=\"%zu\" failures=\"%zu\" errors=\"%zu\"",
+                   count(v, stage, -1) + skipped, count(v, stage, ASSAY_VERDICT_FAIL),
+                   count(v, stage, ASSAY_VERDICT_CANNOT_TELL));
+    if (skipped > 0) {
+        assay_text_add(text, " skipped=\"%zu\"", skipped);
+    }
 }
 
 static void add_suite(assay_text_builder *text, const assay_verdict *v, const char *stage)
 {
     assay_text_add(text, "  <testsuite");
     add_attribute(text, "name", stage);
-    add_counts(text, v, stage);
+    add_counts(text, v, stage, 0);
     assay_text_add(text, ">\n");
     for (size_t i = 0; i < v->count; i++) {
         if (strcmp(v->findings[i].stage, stage) == 0) {
             add_case(text, &v->findings[i]);
+        }
+    }
+    assay_text_add(text, "  </testsuite>\n");
+}
+
+/* What a verdict on a bundle says nothing of, by the names of settings. */
+static const char *const UNSEEN[] = {"not judged", "missing"};
+enum { UNSEEN_COUNT = sizeof UNSEEN / sizeof UNSEEN[0] };
+
+static size_t count_unseen(const assay_verdict *v)
+{
+    size_t found = 0;
+    for (int i = 0; i < UNSEEN_COUNT; i++) {
+        found += assay_verdict_get(v, UNSEEN[i]) != NULL;
+    }
+    return found;
+}
+
+static void add_unseen(assay_text_builder *text, const assay_verdict *v)
+{
+    const size_t found = count_unseen(v);
+    if (found == 0) {
+        return;
+    }
+    assay_text_add(text,
+                   "  <testsuite name=\"unseen\" tests=\"%zu\" failures=\"0\" errors=\"0\" "
+                   "skipped=\"%zu\">\n",
+                   found, found);
+    for (int i = 0; i < UNSEEN_COUNT; i++) {
+        const char *names = assay_verdict_get(v, UNSEEN[i]);
+        if (names) {
+            assay_text_add(text, "    <testcase classname=\"unseen\" name=\"%s\">\n      <skipped",
+                           UNSEEN[i]);
+            add_attribute(text, "message", names);
+            assay_text_add(text, "/>\n    </testcase>\n");
         }
     }
     assay_text_add(text, "  </testsuite>\n");
@@ -153,9 +193,10 @@ assay_status assay_verdict_junit(const assay_verdict *verdict, char **text_out)
     assay_text_add(&text, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites");
     add_attribute(&text, "name", verdict->candidate);
     if (verdict->count > 0) {
-        add_counts(&text, verdict, NULL);
+        add_counts(&text, verdict, NULL, count_unseen(verdict));
     } else {
-        assay_text_add(&text, " tests=\"1\" failures=\"0\" errors=\"1\"");
+        assay_text_add(&text, " tests=\"%zu\" failures=\"0\" errors=\"1\"",
+                       1 + count_unseen(verdict));
     }
     assay_text_add(&text, ">\n");
     if (verdict->count == 0) {
@@ -166,6 +207,7 @@ assay_status assay_verdict_junit(const assay_verdict *verdict, char **text_out)
             add_suite(&text, verdict, verdict->findings[i].stage);
         }
     }
+    add_unseen(&text, verdict);
     assay_text_add(&text, "</testsuites>\n");
     return assay_text_finish(&text, "a verdict's JUnit XML", text_out);
 }

@@ -107,8 +107,13 @@ static void add_head(assay_text_builder *text, const assay_verdict *verdict)
         assay_text_add_char(text, '.');
         break;
     case ASSAY_VERDICT_CANNOT_TELL:
-        assay_text_add(text, "CANNOT TELL whether %s agrees with %s: %zu of %zu tests cannot.",
-                       verdict->candidate, verdict->reference, unsure, verdict->count);
+        assay_text_add(text, "CANNOT TELL whether %s agrees with %s: ", verdict->candidate,
+                       verdict->reference);
+        if (verdict->count == 0) {
+            assay_text_add(text, "nothing in it could be tested.");
+        } else {
+            assay_text_add(text, "%zu of %zu tests cannot.", unsure, verdict->count);
+        }
         break;
     }
 }

@@ -11,6 +11,7 @@
 #include "oracle/stage.h"
 #include "oracle/stage_meaning.h"
 #include "oracle/verify_inputs.h"
+#include "oracle/verify_unseen.h"
 
 typedef struct {
     assay_context       *context;
@@ -243,24 +244,6 @@ static assay_status judge_stage(const verification *v, const oracle_stage *stage
     return status;
 }
 
-/* What no stage could be asked about, so that nobody takes it for judged. */
-static assay_status tell_unjudged(const verification *v)
-{
-    char   text[1024] = "";
-    size_t used       = 0;
-    for (int i = 0; i < assay_bundle_count(v->candidate); i++) {
-        assay_bundle_entry entry = {.name = NULL};
-        if (assay_bundle_entry_at(v->candidate, i, &entry) != ASSAY_OK) {
-            continue;
-        }
-        if (!verify_is_judged(v->verdict, entry.name) && used < sizeof text) {
-            used += (size_t)snprintf(text + used, sizeof text - used, "%s%s", used ? ", " : "",
-                                     entry.name);
-        }
-    }
-    return used ? assay_verdict_set(v->verdict, "not judged", text) : ASSAY_OK;
-}
-
 static assay_status judge_stages(const verification *v)
 {
     assay_status status =
@@ -275,7 +258,7 @@ static assay_status judge_stages(const verification *v)
     if (status == ASSAY_OK && v->reference) {
         status = verify_inputs(v->candidate, v->reference, v->precision, v->verdict);
     }
-    return status ? status : tell_unjudged(v);
+    return status ? status : verify_tell_unseen(v->candidate, v->reference, v->verdict);
 }
 
 assay_status assay_verify_bundle(assay_context *context, const char *candidate,

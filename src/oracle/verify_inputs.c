@@ -42,7 +42,7 @@ static const assay_stage_array *reader_of(const assay_verdict       *verdict,
             continue;
         }
         for (; input->name; input++) {
-            if (stage_find_name(candidate, input->name, name) && strcmp(name, array) == 0) {
+            if (stage_find_input(candidate, input->name, name) && strcmp(name, array) == 0) {
                 return input;
             }
         }

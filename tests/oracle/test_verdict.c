@@ -285,8 +285,27 @@ static void junit_is_well_formed(void **state)
     assert_non_null(strstr(text, "tests=\"3\" failures=\"1\" errors=\"1\""));
     assert_non_null(strstr(text, "a&#60;b&#62;&#38;&#34;c&#34;&#39;,:%&#10;??.exr"));
     assert_null(strchr(text, '\x01'));
+    assert_null(strstr(text, "skipped"));
     /* A surrogate in UTF-8 is no character of XML, byte by byte. */
     assert_non_null(strstr(text, "]]&#62; ???\""));
+    assay_text_destroy(*state, text);
+    assay_verdict_destroy(verdict);
+}
+
+/* What nothing was said of is counted among the tests, as skipped. */
+static void junit_skips_the_unseen(void **state)
+{
+    assay_verdict *verdict = nasty(*state);
+    char          *text    = NULL;
+    assert_int_equal(assay_verdict_set(verdict, "not judged", "a<b, c"), ASSAY_OK);
+    assert_int_equal(assay_verdict_set(verdict, "missing", "d"), ASSAY_OK);
+    assert_int_equal(assay_verdict_junit(verdict, &text), ASSAY_OK);
+    assert_int_equal(read_xml(text, "testsuite"), 3);
+    assert_int_equal(read_xml(text, "testcase"), 5);
+    assert_int_equal(read_xml(text, "skipped"), 2);
+    assert_non_null(strstr(text, "tests=\"5\" failures=\"1\" errors=\"1\" skipped=\"2\""));
+    assert_non_null(strstr(text, "name=\"not judged\">\n      <skipped message=\"a&#60;b, c\"/>"));
+    assert_non_null(strstr(text, "name=\"missing\">\n      <skipped message=\"d\"/>"));
     assay_text_destroy(*state, text);
     assay_verdict_destroy(verdict);
 }
@@ -373,6 +392,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(settings, set_up, tear_down),
         cmocka_unit_test_setup_teardown(json_follows_its_schema, set_up, tear_down),
         cmocka_unit_test_setup_teardown(junit_is_well_formed, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(junit_skips_the_unseen, set_up, tear_down),
         cmocka_unit_test_setup_teardown(annotations_are_lines, set_up, tear_down),
         cmocka_unit_test_setup_teardown(words, set_up, tear_down),
         cmocka_unit_test(every_refused_block),

@@ -231,24 +231,25 @@ static void test_inputs(void **state)
     free(d);
 }
 
-/* 1e-6 is between 16 and 17 of a half's smallest steps; pixel 7 sees no indirect light. */
+/* Both parts are just short of the middle between two of a half's smallest steps, so their sum
+ * loses nearly one. */
 static void test_small_halves(void **state)
 {
     enum { AT = 3 * 7 };
     static const struct {
         double             taken, total;
         assay_verdict_kind kind;
-    } cases[] = {{1e-6, 17.0, ASSAY_VERDICT_PASS},
-                 {17.0 * 0x1p-24, 17.0, ASSAY_VERDICT_PASS},
-                 {1e-6, 18.0, ASSAY_VERDICT_FAIL},
-                 {18.0 * 0x1p-24, 18.0, ASSAY_VERDICT_CANNOT_TELL}};
+    } cases[] = {{16.49, 24.0, ASSAY_VERDICT_PASS},
+                 {16.0, 24.0, ASSAY_VERDICT_PASS},
+                 {16.49, 23.0, ASSAY_VERDICT_FAIL},
+                 {15.0, 23.0, ASSAY_VERDICT_CANNOT_TELL}};
     data *d = make_data(*state), *mine = malloc(sizeof *mine);
     assert_non_null(mine);
-    assert_true(d->values[INDIRECT][AT] == 0.0);
-    d->values[DIRECT][AT] = 1e-6;
+    d->values[DIRECT][AT]   = 16.49 * 0x1p-24;
+    d->values[INDIRECT][AT] = 8.49 * 0x1p-24;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         memcpy(mine, d, sizeof *mine);
-        mine->values[DIRECT][AT] = cases[i].taken;
+        mine->values[DIRECT][AT] = cases[i].taken * 0x1p-24;
         mine->values[TOTAL][AT]  = cases[i].total * 0x1p-24;
         assay_verdict *verdict   = verify(*state, mine, d, ASSAY_PRECISION_HALF);
         assert_int_equal(assay_verdict_whole(verdict), cases[i].kind);
@@ -465,7 +466,7 @@ static void replace(const stage_case *c, const char *after, const char *from, co
     char *entry = strstr(text, after);
     char *at    = entry ? strstr(entry, from) : NULL;
     assert_non_null(at);
-    assert_int_equal(strlen(from), strlen(to));
+    memmove(at + strlen(to), at + strlen(from), strlen(at + strlen(from)) + 1);
     memcpy(at, to, strlen(to));
     file = fopen(path, "wb");
     assert_non_null(file);
@@ -483,7 +484,9 @@ static void test_lying_manifest(void **state)
         {"\"records/radius\"", "float64", "floaty8", "dtype"},
         {"\"records/radius\"", "records/radius.npy", "records/normal.npy", "'file'"},
         {"\"records/radius\"", "\"unit\"", "\"tinu\"", "unit"},
+        {"\"records/radius\"", "\"sha256\":\t\"", "\"sha256\":0,\"\":\"", "'sha256'"},
         {"\"assay-bundle\"", "assay-bundle", "essay-bundle", "not of a bundle"},
+        {"\"assay-bundle\"", "\"arrays\"", "\"errays\"", "'arrays'"},
     };
     data *d = make_data(*state);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -556,6 +559,39 @@ static void test_nothing(void **state)
     free(d);
 }
 
+/* What the candidate lacks is told; without the sums of the last batch nothing is said of what
+ * follows from them, and nothing wrong of the batch before. */
+static void test_missing(void **state)
+{
+    const double   ends[2] = {RECORDS, RECORDS};
+    data          *d       = make_data(*state);
+    stage_case     c = stage_case_begin(*state), r = stage_case_begin(*state);
+    assay_verdict *verdict = NULL;
+    for (int k = 0; k < 2; k++) {
+        add_arrays(k ? &r : &c, d, k ? -1 : TOTAL);
+        stage_case_table(k ? &r : &c, "splat/batch_end", "records", 2, 1, ends);
+    }
+    stage_case_table(&r, "splat/batch.1/weight", "", PIXELS, 1, d->values[WEIGHT]);
+    stage_case_table(&r, "splat/batch.1/radiance", "W/(m2 sr)", PIXELS, 3, d->values[SUM]);
+    stage_case_finish(&c);
+    stage_case_finish(&r);
+    assert_int_equal(assay_verdict_create(*state, "candidate", "reference", &verdict), ASSAY_OK);
+    assert_int_equal(
+        assay_verify_bundle(*state, c.path, r.path, NULL, ASSAY_PRECISION_FLOAT, verdict),
+        ASSAY_OK);
+    assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_PASS);
+    assert_int_equal(count_of(verdict, "splat"), 2);
+    assert_int_equal(count_of(verdict, "splat-light"), 0);
+    assert_int_equal(count_of(verdict, "normalise"), 0);
+    assert_string_equal(assay_verdict_get(verdict, "missing"), "radiance/total");
+    assert_string_equal(assay_verdict_get(verdict, "not judged"),
+                        "splat/result, radiance/direct, radiance/indirect");
+    assay_verdict_destroy(verdict);
+    stage_case_end(&c);
+    stage_case_end(&r);
+    free(d);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -569,6 +605,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_broken_files, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_lying_manifest, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_refused_memory, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_missing, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_nothing, context_set_up, context_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
