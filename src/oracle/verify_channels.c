@@ -111,6 +111,28 @@ static assay_status list_channels(assay_context *context, const char *list,
     return status;
 }
 
+static bool both_have(const assay_image *candidate, const assay_image *reference, const char *name)
+{
+    return assay_image_find_channel(candidate, name, NULL) &&
+           assay_image_find_channel(reference, name, NULL);
+}
+
+/* Whether a channel is of a layer that both images have, if only in part: a colour of it that one
+ * image lacks is not left out, but cannot be told. */
+static bool is_shared(const assay_image *candidate, const assay_image *reference, const char *name)
+{
+    char      sibling[ASSAY_CHANNEL_NAME];
+    const int rank  = rank_of(name);
+    bool      found = false;
+    for (int i = rank / COLOURS * COLOURS; rank < KNOWN && i < (rank / COLOURS + 1) * COLOURS;
+         i++) {
+        known_name(i, sibling);
+        found = found || both_have(candidate, reference, sibling);
+    }
+    return found && (assay_image_find_channel(candidate, name, NULL) ||
+                     assay_image_find_channel(reference, name, NULL));
+}
+
 assay_status assay_verify_channels_choose(assay_context *context, const assay_image *candidate,
                                           const assay_image *reference, const char *list,
                                           assay_verify_channel **channels_out, int *count_out)
@@ -123,8 +145,7 @@ assay_status assay_verify_channels_choose(assay_context *context, const assay_im
     assay_status status = list_channels(context, list, channels, &listed);
     int          count  = 0;
     for (int i = 0; status == ASSAY_OK && i < listed; i++) {
-        if (list || (assay_image_find_channel(candidate, channels[i].name, NULL) &&
-                     assay_image_find_channel(reference, channels[i].name, NULL))) {
+        if (list || is_shared(candidate, reference, channels[i].name)) {
             channels[count++] = channels[i];
         }
     }

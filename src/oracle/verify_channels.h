@@ -12,8 +12,8 @@ assay_status assay_verify_channels_names(assay_context *context, const char *lis
                                          const char ***names_out);
 
 /* Channels to compare, zeroed but for name and stage, in the order of the light's way; released
- * with assay_release.  With a list, those; without, those that both images have.  Errors: ARGUMENT
- * (as above; nothing in common), MEMORY. */
+ * with assay_release.  With a list, those; without, those of layers of which both images have a
+ * channel.  Errors: ARGUMENT (as above; nothing in common), MEMORY. */
 assay_status assay_verify_channels_choose(assay_context *context, const assay_image *candidate,
                                           const assay_image *reference, const char *list,
                                           assay_verify_channel **channels_out, int *count_out);

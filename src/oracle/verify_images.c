@@ -66,6 +66,47 @@ static assay_status check_images(assay_context *context, const assay_image *cons
     return ASSAY_OK;
 }
 
+static const float *floats_of(const assay_image *image, const char *name)
+{
+    assay_channel channel;
+    return assay_image_find_channel(image, name, &channel) && channel.type == ASSAY_CHANNEL_FLOAT
+               ? channel.data.f32
+               : NULL;
+}
+
+static bool same_values(const assay_image *a, const assay_image *b,
+                        const assay_verify_channel *channels, int count)
+{
+    const size_t pixels = (size_t)assay_image_width(a) * (size_t)assay_image_height(a);
+    int          same   = 0;
+    for (int i = 0; i < count; i++) {
+        const float *x = floats_of(a, channels[i].name), *y = floats_of(b, channels[i].name);
+        if (x && y && memcmp(x, y, pixels * sizeof *x) != 0) {
+            return false;
+        }
+        same += x && y;
+    }
+    return same > 0;
+}
+
+/* The spread of runs is their noise only where their random numbers differ. */
+static assay_status check_runs(assay_context *context, const assay_image *const *candidates,
+                               int count, const assay_verify_channel *channels, int channel_count)
+{
+    for (int i = 1; i < count; i++) {
+        for (int k = 0; k < i; k++) {
+            const bool same = same_values(candidates[k], candidates[i], channels, channel_count);
+            if (same || assay_verify_shared_seed(candidates[k], candidates[i])) {
+                return assay_fail(context, ASSAY_ERR_ARGUMENT,
+                                  "runs %d and %d of the candidate %s: runs differ in their random "
+                                  "numbers",
+                                  k + 1, i + 1, same ? "are the same image" : "have the same seed");
+            }
+        }
+    }
+    return ASSAY_OK;
+}
+
 /* ---- what the verdict says of itself ---- */
 
 /* The worst over channels of what a class could have seen, in parts of the mean. */
@@ -197,6 +238,7 @@ assay_status assay_verify_images(const assay_image *const *candidates, int count
     status = status ? status
                     : assay_verify_channels_choose(context, candidates[0], reference,
                                                    options->channels, &channels, &channel_count);
+    status = status ? status : check_runs(context, candidates, count, channels, channel_count);
     if (status == ASSAY_OK) {
         status = judge_all(context, candidates, count, reference, options, channels, channel_count,
                            verdict);

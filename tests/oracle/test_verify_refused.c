@@ -74,7 +74,49 @@ static void missing_channels(void **state)
     expect_problem(*state, c, r, "R,G", "channel", "candidate does not have");
     normal_images_add(c, "G");
     expect_problem(*state, c, r, "R,G", "channel", "reference does not have");
+    /* Half a layer is no layer, a whole one may be left out. */
+    expect_problem(*state, c, r, NULL, "channel", "reference does not have");
+    expect_problem(*state, r, c, NULL, "channel", "candidate does not have");
+    normal_images_add(c, "Direct.R");
+    normal_images_add(r, "G");
+    normal_images_add(r, "Irradiance.G");
+    assay_verdict *v = normal_images_verify(*state, r, c, NULL);
+    assert_true(assay_verdict_count(v) > 1);
+    for (int i = 0; i < assay_verdict_count(v); i++) {
+        assert_string_equal(assay_verdict_at(v, i).stage, "image");
+    }
+    assay_verdict_destroy(v);
     assay_image_destroy(c);
+    assay_image_destroy(r);
+}
+
+/* Runs that are one run have no spread, and would make noise a difference. */
+static void runs_that_are_one(void **state)
+{
+    const assay_verify_options o       = assay_verify_options_default();
+    assay_verdict             *v       = NULL;
+    assay_image               *runs[3] = {normal_images_make(*state, 9, 0.5, 64),
+                                          normal_images_make(*state, 10, 0.5, 64),
+                                          normal_images_make(*state, 9, 0.5, 64)};
+    const assay_image *const  *c       = (const assay_image *const *)runs;
+    assay_image               *r       = normal_images_make(*state, 11, 0.5, 256);
+    assert_int_equal(assay_verdict_create(*state, "c", "r", &v), ASSAY_OK);
+    assert_int_equal(assay_verify_images(c, 2, r, &o, v), ASSAY_OK);
+    assert_int_equal(assay_verify_images(c, 3, r, &o, v), ASSAY_ERR_ARGUMENT);
+    assert_non_null(strstr(assay_context_error(*state), "runs 1 and 3"));
+    for (int k = 0; k < 2; k++) {
+        assay_image_set_attribute(runs[k], "assay:method", "path");
+        assay_image_set_attribute(runs[k], "assay:version", "1");
+        assay_image_set_attribute(runs[k], "assay:seed", k == 0 ? "4" : "5");
+    }
+    assert_int_equal(assay_verify_images(c, 2, r, &o, v), ASSAY_OK);
+    assay_image_set_attribute(runs[1], "assay:seed", "4");
+    assert_int_equal(assay_verify_images(c, 2, r, &o, v), ASSAY_ERR_ARGUMENT);
+    assert_non_null(strstr(assay_context_error(*state), "seed"));
+    assay_verdict_destroy(v);
+    for (int k = 0; k < 3; k++) {
+        assay_image_destroy(runs[k]);
+    }
     assay_image_destroy(r);
 }
 
@@ -229,6 +271,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(bad_values, set_up, tear_down),
         cmocka_unit_test_setup_teardown(missing_channels, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(runs_that_are_one, set_up, tear_down),
         cmocka_unit_test_setup_teardown(reference_without_variance, set_up, tear_down),
         cmocka_unit_test_setup_teardown(refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(metadata, set_up, tear_down),
