@@ -190,6 +190,18 @@ static const char *take(void *user, int index, const char *value)
     }
 }
 
+/* What would be without an effect on bundles. */
+static const char *check_bundle_options(const assay_verify_options *o)
+{
+    const bool noise = o->allow > 0.0 || o->allow_absolute > 0.0 || o->detect > 0.0 ||
+                       o->detect_tile > 0.0 || o->candidate_samples || o->reference_samples ||
+                       o->reference_exact;
+    return noise || o->channels || o->ignore_metadata
+               ? "--allow, --detect, --samples, --reference-exact, --channels and "
+                 "--ignore-metadata go with images"
+               : NULL;
+}
+
 /* What the options say together; NULL, or what is wrong. */
 static const char *check_together(const verify_request *r)
 {
@@ -199,7 +211,12 @@ static const char *check_together(const verify_request *r)
     if (!r->reference && !cli_is_bundle(r->candidates[0])) {
         return "--reference is missing";
     }
-    const char *problem = cli_bundle_check(&r->bundles, r->count, r->candidates[0]);
+    const bool bundle = cli_is_bundle(r->candidates[0]);
+    if (!bundle && cli_is_bundle(r->reference)) {
+        return "the reference is a bundle, the candidate is none that can be read";
+    }
+    const char *problem = bundle ? check_bundle_options(&r->options) : NULL;
+    problem = problem ? problem : cli_bundle_check(&r->bundles, r->count, r->candidates[0]);
     if (problem) {
         return problem;
     }

@@ -63,7 +63,10 @@ static void compare(const assay_array *mine, const assay_array *theirs, const ro
     c->values = assay_array_rows(mine) * assay_array_columns(mine);
     for (size_t i = 0; i < c->values; i++) {
         const double bound = given_error(once, r[i]) * (1.0 + 0x1p-20);
-        const double away  = x[i] == r[i] || (isnan(x[i]) && isnan(r[i])) ? 0.0 : fabs(x[i] - r[i]);
+        const bool   same  = x[i] == r[i] || (isnan(x[i]) && isnan(r[i]));
+        const double away  = same                               ? 0.0
+                             : isfinite(x[i]) && isfinite(r[i]) ? fabs(x[i] - r[i])
+                                                                : INFINITY;
         const double share = isfinite(away) && away <= 1e300 * bound ? away / bound : 1e300;
         if (i == 0 || (away > 0.0 && share > c->in_bounds)) {
             *c = (comparison){i, c->values, x[i], r[i], bound, away > 0.0 ? share : 0.0};

@@ -79,6 +79,14 @@ for bad in "--level 0" "--level 0.5" "--level x" "--correction bonferroni" "--ti
     "--reference-samples 0" "--precision quad" "--threads -1"; do
     refuses "$bad" 2 "${bad%% *}" verify "$folder/same.exr" $truth $bad
 done
+mkdir "$folder/bundle"
+for option in "--allow 0.1" "--detect 0.1" "--channels R" "--reference-exact" "--ignore-metadata"; do
+    refuses "${option%% *} of a bundle" 2 "go with images" verify "$folder/bundle" $option
+done
+refuses "an image against a bundle" 2 "the reference is a bundle" verify "$folder/same.exr" \
+    --reference "$folder/bundle"
+refuses "a bundle against an image" 2 "bundle/manifest.json" verify "$folder/bundle" $truth
+refuses "a run twice" 2 "runs 1 and 2" verify "$folder/same.exr" "$folder/same.exr" $truth
 refuses "a channel twice" 2 "R is named twice" verify "$folder/same.exr" $truth --channels R,R
 refuses "an output in a folder that is not there" 3 "nowhere" verify "$folder/same.exr" $truth -q \
     --json "$folder/nowhere/v.json"

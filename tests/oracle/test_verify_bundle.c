@@ -38,7 +38,7 @@ static const char *const UNITS[]  = {
      "",  "", "W/(m2 sr)", "W/(m2 sr)", "W/(m2 sr)",  "W/(m2 sr)", "W/(m2 sr)"};
 enum { ARRAY_COUNT = sizeof ARRAYS / sizeof ARRAYS[0], MOST = 9 * PIXELS };
 static const size_t COLUMNS[ARRAY_COUNT] = {3, 3, 1, 3, 9, 9, 3, 9, 3, 1, 3, 3, 3, 3, 3};
-enum { ALBEDO = 8, INPUTS = 11 };
+enum { POSITION = 6, ALBEDO = 8, INPUTS = 11 };
 /* A pixel at record 5: its weight is 1e12, or what a float makes of that. */
 enum { STANDS = 33 };
 
@@ -229,6 +229,34 @@ static void test_inputs(void **state)
     assay_verdict_destroy(verdict);
     free(other);
     free(d);
+}
+
+/* Who asks nothing of any pixel makes no mistake in any stage, and no image. */
+static void test_nothing_asked(void **state)
+{
+    static const int made[] = {WEIGHT, SUM, RESULT};
+    for (int all = 0; all < 2; all++) {
+        data *d = make_data(*state), *mine = malloc(sizeof *mine);
+        assert_non_null(mine);
+        memcpy(mine, d, sizeof *mine);
+        for (size_t i = all ? 0 : 100; i < (all ? PIXELS : 101); i++) {
+            for (size_t a = 0; a < 3; a++) {
+                const size_t columns = COLUMNS[made[a]];
+                memset(&mine->values[made[a]][columns * i], 0, columns * sizeof(double));
+            }
+            for (size_t c = 0; c < 3; c++) {
+                mine->values[POSITION][3 * i + c] = NAN;
+            }
+        }
+        assay_verdict      *verdict = verify(*state, mine, d, ASSAY_PRECISION_FLOAT);
+        const assay_finding f       = assay_verdict_at(verdict, assay_verdict_first(verdict));
+        assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_CANNOT_TELL);
+        assert_string_equal(f.array, "splat/position");
+        assert_int_equal(f.place.row, all ? 0 : 100);
+        assay_verdict_destroy(verdict);
+        free(mine);
+        free(d);
+    }
 }
 
 /* Both parts are just short of the middle between two of a half's smallest steps, so their sum
@@ -597,6 +625,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_right, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_inputs, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_nothing_asked, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_small_halves, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_planted, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_channels, context_set_up, context_tear_down),
