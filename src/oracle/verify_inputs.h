@@ -9,7 +9,8 @@
 /* Whether a stage judged the array. */
 bool verify_is_judged(const assay_verdict *verdict, const char *array);
 
-/* Adds a finding for each array that a stage of the verdict read and none judged: it passes where
+/* Adds a finding for each array that a stage of the verdict read, or that is made before all stages
+ * (records, what is splatted on), and that none judged: it passes where
  * it is the reference's, rounded once to the candidate's precision, and cannot be told otherwise.
  * Errors: those of bundles, MEMORY. */
 assay_status verify_inputs(const assay_bundle_reader *candidate,

@@ -566,6 +566,37 @@ static void test_refused_memory(void **state)
     free(d);
 }
 
+/* Records that no stage reads: alone they are nothing to judge, beside an image that is right they
+ * must be the reference's. */
+static void test_records_alone(void **state)
+{
+    data *d = make_data(*state);
+    for (int other = 0; other < 2; other++) {
+        stage_case     c = stage_case_begin(*state), r = stage_case_begin(*state);
+        assay_verdict *verdict = NULL;
+        for (int a = 0; a < ARRAY_COUNT; a++) {
+            if (a == 3 || a >= DIRECT) {
+                stage_case_table(&r, ARRAYS[a], UNITS[a], rows_of(a), COLUMNS[a], d->values[a]);
+                d->values[3][100] *= other && a == 3 ? 1.5 : 1.0;
+                stage_case_table(&c, ARRAYS[a], UNITS[a], rows_of(a), COLUMNS[a], d->values[a]);
+            }
+        }
+        stage_case_finish(&c);
+        stage_case_finish(&r);
+        assert_int_equal(assay_verdict_create(*state, "c", "r", &verdict), ASSAY_OK);
+        assert_int_equal(
+            assay_verify_bundle(*state, c.path, r.path, NULL, ASSAY_PRECISION_FLOAT, verdict),
+            ASSAY_OK);
+        assert_int_equal(assay_verdict_whole(verdict),
+                         other ? ASSAY_VERDICT_CANNOT_TELL : ASSAY_VERDICT_PASS);
+        assert_int_equal(count_of(verdict, "inputs"), 3);
+        assay_verdict_destroy(verdict);
+        stage_case_end(&c);
+        stage_case_end(&r);
+    }
+    free(d);
+}
+
 /* Nothing that a stage could judge is no pass. */
 static void test_nothing(void **state)
 {
@@ -634,6 +665,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_broken_files, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_lying_manifest, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_refused_memory, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_records_alone, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_missing, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_nothing, context_set_up, context_tear_down),
     };
