@@ -125,13 +125,20 @@ static void fill_in(assay_noisy_sums *s, const assay_local_noise *local)
     fill_in_light(s, local->candidate_event, local->reference_event);
 }
 
+/* Of one estimator variances are as numbers of samples are, whatever either image has seen. */
+static void take_counts(const assay_noisy_sums *s, assay_local_noise *local)
+{
+    local->up   = fmax(local->up, ratio(s->reference_samples, s->candidate_samples));
+    local->down = fmax(local->down, ratio(s->candidate_samples, s->reference_samples));
+}
+
 static void fit(assay_tile_level *tiles, assay_noise_model_kind kind, double *scratch,
                 assay_noise_model *model)
 {
     double up = 0.0, down = 0.0;
     if (kind == ASSAY_NOISE_MODEL_ALONE) {
         up = whole_ratio(tiles, SQUARES, REFERENCE, scratch);
-    } else if (kind == ASSAY_NOISE_MODEL_BOTH) {
+    } else if (kind == ASSAY_NOISE_MODEL_BOTH || kind == ASSAY_NOISE_MODEL_COUNTED) {
         up   = whole_ratio(tiles, CANDIDATE, REFERENCE, scratch);
         down = whole_ratio(tiles, REFERENCE, CANDIDATE, scratch);
     }
@@ -140,7 +147,10 @@ static void fit(assay_tile_level *tiles, assay_noise_model_kind kind, double *sc
                                               (int)(i / (size_t)tiles->columns));
         local.up                = fmax(local.up, up);
         local.down              = fmax(local.down, down);
-        model->tiles[i]         = local;
+        if (kind == ASSAY_NOISE_MODEL_COUNTED) {
+            take_counts(&tiles->sums[i], &local);
+        }
+        model->tiles[i] = local;
     }
     for (size_t i = 0; i < tiles->count; i++) {
         fill_in(&tiles->sums[i], &model->tiles[i]);

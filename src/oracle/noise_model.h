@@ -27,9 +27,11 @@ typedef struct {
 } assay_noise_model;
 
 typedef enum {
-    ASSAY_NOISE_MODEL_BOTH,  /* candidate and reference have variances                         */
-    ASSAY_NOISE_MODEL_ALONE, /* the candidate's is not known and taken from the differences    */
-    ASSAY_NOISE_MODEL_FIXED  /* the candidate is taken as it is: its noise counts as an error  */
+    ASSAY_NOISE_MODEL_BOTH,   /* candidate and reference have variances                         */
+    ASSAY_NOISE_MODEL_ALONE,  /* the candidate's is not known and taken from the differences    */
+    ASSAY_NOISE_MODEL_FIXED,  /* the candidate is taken as it is: its noise counts as an error  */
+    ASSAY_NOISE_MODEL_COUNTED /* as BOTH, and a sample of the candidate is no less noisy than one
+                                 of the reference                                              */
 } assay_noise_model_kind;
 
 /* From the sums of the smallest tiles, in which it then fills in what it says of each.

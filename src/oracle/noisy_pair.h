@@ -32,15 +32,21 @@ typedef struct {
     double candidate_variance, reference_variance;
     double candidate_spread, reference_spread; /* squares of variances over their degrees        */
     double squares;                            /* of the difference                             */
+    double candidate_samples, reference_samples; /* 0: of some pixel not known                  */
     /* What the noise model makes of either image's variance alone; 0 before it was asked. */
     double by_reference, by_reference_spread;
     double by_candidate, by_candidate_spread;
     double by_reference_light, by_candidate_light;
 } assay_noisy_sums;
 
+static inline double assay_noisy_samples(const assay_noisy_channel *channel, size_t pixel)
+{
+    return channel->count ? (double)channel->count[pixel] : channel->samples;
+}
+
 static inline double assay_noisy_degrees(const assay_noisy_channel *channel, size_t pixel)
 {
-    const double samples = channel->count ? (double)channel->count[pixel] : channel->samples;
+    const double samples = assay_noisy_samples(channel, pixel);
     return samples > 2.0 ? samples - 1.0 : 1.0;
 }
 
@@ -59,7 +65,9 @@ static inline assay_noisy_sums assay_noisy_pixel(const assay_noisy_pair *pair, s
                               .reference_variance = vr,
                               .candidate_spread   = vc * vc / assay_noisy_degrees(c, pixel),
                               .reference_spread   = vr * vr / assay_noisy_degrees(r, pixel),
-                              .squares            = d * d};
+                              .squares            = d * d,
+                              .candidate_samples  = assay_noisy_samples(c, pixel),
+                              .reference_samples  = assay_noisy_samples(r, pixel)};
 }
 
 static inline void assay_noisy_add(assay_noisy_sums *sums, const assay_noisy_sums *more)
@@ -74,6 +82,8 @@ static inline void assay_noisy_add(assay_noisy_sums *sums, const assay_noisy_sum
     sums->candidate_spread += more->candidate_spread;
     sums->reference_spread += more->reference_spread;
     sums->squares += more->squares;
+    sums->candidate_samples += more->candidate_samples;
+    sums->reference_samples += more->reference_samples;
     sums->by_reference += more->by_reference;
     sums->by_reference_spread += more->by_reference_spread;
     sums->by_candidate += more->by_candidate;

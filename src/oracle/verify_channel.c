@@ -197,14 +197,18 @@ static assay_status fit_runs(assay_context *context, const assay_image *const *c
 
 /* ---- together ---- */
 
-/* Where equivalence is tested, a candidate without variance is taken as it is. */
+/* Where equivalence is tested, a candidate without variance is taken as it is, and a biased
+ * method's samples may well be less noisy than the reference's. */
 static assay_noise_model_kind model_kind(const assay_verify_channel *channel,
                                          const assay_verify_options *options)
 {
     const bool equivalence = !isnan(options->allow) || !isnan(options->allow_absolute);
-    return channel->source != ASSAY_NOISE_ALONE ? ASSAY_NOISE_MODEL_BOTH
-           : equivalence                        ? ASSAY_NOISE_MODEL_FIXED
-                                                : ASSAY_NOISE_MODEL_ALONE;
+    if (channel->source == ASSAY_NOISE_ALONE) {
+        return equivalence ? ASSAY_NOISE_MODEL_FIXED : ASSAY_NOISE_MODEL_ALONE;
+    }
+    return channel->source == ASSAY_NOISE_OWN && !equivalence && !options->reference_exact
+               ? ASSAY_NOISE_MODEL_COUNTED
+               : ASSAY_NOISE_MODEL_BOTH;
 }
 
 static void find_pair(const assay_image *const *candidates, int count, const assay_image *reference,

@@ -106,6 +106,35 @@ static void by_hand(void **state)
     assay_tile_sums_release(&sums);
 }
 
+/* Variances are 2 to 1; numbers of samples count where they say more, and where both are known. */
+static void by_counts(void **state)
+{
+    static const double CANDIDATE[] = {2, 2, 2, 2, 2, 2, 2, 2, 2};
+    static const double REFERENCE[] = {1, 1, 1, 1, 1, 1, 1, 1, 1};
+    static const struct {
+        double candidate, reference, up, down, candidate_degrees, reference_degrees;
+    } CASES[] = {
+        {4, 16, 4, 0.5, 3, 15}, {16, 4, 2, 4, 15, 3}, {4, 0, 2, 0.5, 3, 1}, {0, 4, 2, 0.5, 1, 3}};
+    const double n = IN_TILE;
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
+        images            m;
+        assay_tile_sums   sums;
+        assay_noise_model model;
+        fill(&m, CANDIDATE, REFERENCE);
+        m.pair.candidate.samples = CASES[i].candidate;
+        m.pair.reference.samples = CASES[i].reference;
+        assert_int_equal(assay_tile_sums_make(*state, &m.pair, TILE, &sums), ASSAY_OK);
+        assert_int_equal(
+            assay_noise_model_fit(*state, &sums.levels[0], ASSAY_NOISE_MODEL_COUNTED, &model),
+            ASSAY_OK);
+        const assay_noise noise = assay_noise_of_region(&model, &sums.levels[0].sums[4], 1.0);
+        expect_view(&noise, 1, (1.0 + CASES[i].up) * n, n * CASES[i].reference_degrees);
+        expect_view(&noise, 2, (1.0 + CASES[i].down) * 2.0 * n, n * CASES[i].candidate_degrees);
+        assay_noise_model_release(&model);
+        assay_tile_sums_release(&sums);
+    }
+}
+
 /* A candidate that is taken as it is, or whose noise is what the differences say: 1 each. */
 static void without_a_variance(void **state)
 {
@@ -172,6 +201,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(by_hand, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(by_counts, set_up, tear_down),
         cmocka_unit_test_setup_teardown(without_a_variance, set_up, tear_down),
         cmocka_unit_test(probabilities),
     };

@@ -107,6 +107,30 @@ static void leak_in_one_tile(void **state)
     assay_image_destroy(r);
 }
 
+/* In twenty pixels one sample in a hundred is 30, all others are 1.  Four samples missed all of
+ * them: their variance is 0, and the light is the same still.  Of 1024 they would be missed in no
+ * image. */
+static void rare_light_missed(void **state)
+{
+    enum { RARE = 20 };
+    const double variance = 0.01 * 0.99 * 30.0 * 30.0;
+    for (int samples = 4; samples <= 1024; samples *= 256) {
+        assay_image *c = normal_images_make(*state, 5, 0.5, samples),
+                    *r = normal_images_make(*state, 6, 0.5, 1024);
+        for (int i = 0; i < PIXELS; i++) {
+            const bool rare                          = i % (PIXELS / RARE) == 0 && i > 0;
+            normal_images_values(c, "R")[i]          = 1.0F;
+            normal_images_values(r, "R")[i]          = rare ? 1.3F : 1.0F;
+            normal_images_values(c, "Variance.R")[i] = 0.0F;
+            normal_images_values(r, "Variance.R")[i] = rare ? (float)(variance / 1024.0) : 0.0F;
+        }
+        assert_int_equal(normal_images_kind(*state, c, r, NULL),
+                         samples == 4 ? ASSAY_VERDICT_PASS : ASSAY_VERDICT_FAIL);
+        assay_image_destroy(c);
+        assay_image_destroy(r);
+    }
+}
+
 static void one_pixel(void **state)
 {
     assay_image *c = normal_images_make(*state, 5, 0.5, 64),
@@ -454,6 +478,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(same_light_passes, set_up, tear_down),
         cmocka_unit_test_setup_teardown(whole_by_hand, set_up, tear_down),
         cmocka_unit_test_setup_teardown(leak_in_one_tile, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(rare_light_missed, set_up, tear_down),
         cmocka_unit_test_setup_teardown(one_pixel, set_up, tear_down),
         cmocka_unit_test_setup_teardown(firefly_is_told, set_up, tear_down),
         cmocka_unit_test_setup_teardown(detection_that_was_asked, set_up, tear_down),
