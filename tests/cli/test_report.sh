@@ -48,6 +48,8 @@ cp -r "$work/dir/cache" "$work/changed"
 printf x >> "$work/changed/records/position.npy"
 refuses "report: a bundle that is not what its manifest lists" 2 "records/position" report "$work/changed" --reference "$truth" -o "$out/r.html"
 printf '%s' '{"format":"assay-verdict","version":1,"candidate":"other.exr","verdict":"pass","findings":[]}' > "$work/other.json"
+printf '{"format": "assay-bundle",' > "$work/changed/manifest.json"
+refuses "report: a bundle whose manifest is cut short" 2 "is not JSON" report "$work/changed" --reference "$truth" -o "$out/r.html"
 refuses "report: a verdict of somebody else" 2 "other.exr" report "$work/cache.exr" "$work/dir/four.exr" --reference "$truth" --verdict "$work/other.json" -o "$out/r.html"
 echo before > "$out/kept.html"
 "$assay" report "$work/small.exr" --reference "$truth" -o "$out/kept.html" 2> /dev/null
@@ -75,6 +77,11 @@ accepts "an image against itself" report "$truth" --reference "$truth" -o "$work
 "$assay" report "$work/dir/cache" --reference "$truth" --verdict "$work/verdict.json" -o "$work/again.html" -q
 cmp -s "$work/pair.html" "$work/again.html"
 result $? "the same page twice"
+cp -r "$work/dir/cache" "$work/cache"
+sed -i '/"sha256"/d; s/\("shape":.*\]\),$/\1/' "$work/cache/manifest.json"
+"$assay" report "$work/cache" --reference "$truth" --verdict "$work/verdict.json" -o "$work/bare.html" -q
+cmp -s "$work/pair.html" "$work/bare.html"
+result $? "a bundle without digests makes the same page"
 [ "$(grep -c 'class="candidate"' "$work/all.html")" -eq 3 ] && grep 'class="reference"' "$work/all.html" | grep -q '"name":"truth"'
 result $? "three candidates, and the truth is the reference"
 [ "$(wc -c < "$work/pair.html")" -lt 200000 ]
