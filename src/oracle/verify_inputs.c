@@ -89,8 +89,8 @@ static assay_status add_finding(assay_verdict *verdict, const char *array, const
     }
     f.meaning = f.kind == ASSAY_VERDICT_PASS
                     ? NULL
-                    : "the stages after it were judged with it, but it is not the reference's, and "
-                      "no stage says whether it is right";
+                    : "The stages after it were judged with it, but it is not the reference's, and "
+                      "no stage says whether it is right.";
     return assay_verdict_add(verdict, &f);
 }
 
