@@ -88,8 +88,11 @@ static void list_tile(const assay_noisy_sums *s, int at, double lists[LOCALS][NE
     lists[REFERENCE_EVENT][at] = ratio(s->reference_variance, s->reference);
 }
 
-static assay_local_noise look_around(const assay_tile_level *tiles, int x, int y)
+/* Of the smallest tiles, which have the fewest samples, the noisiest counts for events, too. */
+static assay_local_noise look_around(const assay_tile_level *tiles, int x, int y, bool smallest)
 {
+    double (*const event)(const double *values, int count) =
+        smallest ? mean_of : mean_without_largest;
     double lists[LOCALS][NEIGHBOURS];
     int    count = 0;
     for (int v = y - 1; v <= y + 1; v++) {
@@ -104,8 +107,8 @@ static assay_local_noise look_around(const assay_tile_level *tiles, int x, int y
                                mean_without_largest(lists[DOWN], count),
                                mean_without_largest(lists[CANDIDATE_USUAL], count),
                                mean_without_largest(lists[REFERENCE_USUAL], count),
-                               mean_of(lists[CANDIDATE_EVENT], count),
-                               mean_of(lists[REFERENCE_EVENT], count)};
+                               event(lists[CANDIDATE_EVENT], count),
+                               event(lists[REFERENCE_EVENT], count)};
 }
 
 /* Rare samples carry about the same light wherever they are found: variance goes with light. */
@@ -144,7 +147,7 @@ static void fit(assay_tile_level *tiles, assay_noise_model_kind kind, double *sc
     }
     for (size_t i = 0; i < tiles->count; i++) {
         assay_local_noise local = look_around(tiles, (int)(i % (size_t)tiles->columns),
-                                              (int)(i / (size_t)tiles->columns));
+                                              (int)(i / (size_t)tiles->columns), true);
         local.up                = fmax(local.up, up);
         local.down              = fmax(local.down, down);
         if (kind == ASSAY_NOISE_MODEL_COUNTED) {
@@ -183,7 +186,7 @@ void assay_noise_model_light(assay_tile_sums *sums)
         const assay_tile_level *level = &sums->levels[l];
         for (size_t i = 0; i < level->count; i++) {
             const assay_local_noise local = look_around(level, (int)(i % (size_t)level->columns),
-                                                        (int)(i / (size_t)level->columns));
+                                                        (int)(i / (size_t)level->columns), false);
             fill_in_light(&level->sums[i], local.candidate_event, local.reference_event);
         }
     }

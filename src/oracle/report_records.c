@@ -10,6 +10,7 @@
 
 #include "core/context.h"
 #include "core/numerics.h"
+#include "io/image_data.h"
 #include "trace/camera_ray.h"
 
 enum { RECORDS_SHOWN = 20000 };
@@ -109,7 +110,7 @@ static void put_records(const projection *p, const assay_array *positions, const
 static assay_status read_depth(const assay_report_source *source, projection *p,
                                assay_array **depth_out)
 {
-    if (!assay_bundle_lists(source->bundle, "gbuffer/depth")) {
+    if (!assay_bundle_has(source->bundle, "gbuffer/depth")) {
         return ASSAY_OK;
     }
     const assay_status status =
@@ -121,6 +122,21 @@ static assay_status read_depth(const assay_report_source *source, projection *p,
     return status;
 }
 
+static assay_status fail_shape(const assay_report_source *source, const char *name)
+{
+    return assay_fail(source->image->context, ASSAY_ERR_FORMAT,
+                      "%s: bundle: '%s' has another shape than records have", source->path, name);
+}
+
+static assay_status read_columns(const assay_report_source *source, const char *name,
+                                 size_t columns, assay_array **table_out)
+{
+    const assay_status status = assay_bundle_read_array(source->bundle, name, NULL, table_out);
+    return status == ASSAY_OK && assay_array_columns(*table_out) != columns
+               ? fail_shape(source, name)
+               : status;
+}
+
 assay_status assay_report_records_put(const assay_report_source *source, assay_report_text *text)
 {
     static const char *const names[] = {"records", "radiance_records"};
@@ -129,17 +145,15 @@ assay_status assay_report_records_put(const assay_report_source *source, assay_r
         char position[64], radius[64];
         snprintf(position, sizeof position, "%s/position", names[i]);
         snprintf(radius, sizeof radius, "%s/radius", names[i]);
-        if (!assay_bundle_lists(source->bundle, position) || !find_camera(source->image, &p)) {
+        if (!assay_bundle_has(source->bundle, position) || !find_camera(source->image, &p)) {
             continue;
         }
         assay_array *positions = NULL, *radii = NULL, *depth = NULL;
         assay_status status = read_depth(source, &p, &depth);
-        if (status == ASSAY_OK) {
-            status = assay_bundle_read_table(source->bundle, position, SIZE_MAX, 3, &positions);
-        }
-        if (status == ASSAY_OK) {
-            status = assay_bundle_read_table(source->bundle, radius, assay_array_rows(positions), 1,
-                                             &radii);
+        status              = status ? status : read_columns(source, position, 3, &positions);
+        status              = status ? status : read_columns(source, radius, 1, &radii);
+        if (status == ASSAY_OK && assay_array_rows(positions) != assay_array_rows(radii)) {
+            status = fail_shape(source, radius);
         }
         if (status == ASSAY_OK) {
             put_records(&p, positions, radii, text);

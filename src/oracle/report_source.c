@@ -127,11 +127,11 @@ static assay_status read_bundle(assay_context *context, assay_report_source *sou
     assay_status status = assay_bundle_open(context, source->path, &source->bundle);
     status              = status ? status : make_image(context, source);
     for (size_t i = 0; status == ASSAY_OK && i < sizeof PARTS / sizeof PARTS[0]; i++) {
-        if (PARTS[i].needed || assay_bundle_lists(source->bundle, PARTS[i].array)) {
+        if (PARTS[i].needed || assay_bundle_has(source->bundle, PARTS[i].array)) {
             status = add_part(context, source, i);
         }
     }
-    const int texts = assay_bundle_text_count(source->bundle);
+    const int texts = status == ASSAY_OK ? assay_bundle_text_count(source->bundle) : 0;
     for (int i = 0; status == ASSAY_OK && i < texts; i++) {
         const char *value;
         const char *key = assay_bundle_text_at(source->bundle, i, &value);

@@ -83,18 +83,18 @@ void stage_meaning(size_t columns, size_t count, const double *values, const dou
     const double factor = factor_of(count, values, right);
     if (isfinite(factor) && is_factor(count, values, right, factor)) {
         if (fabs(factor + 1.0) < 1e-3) {
-            snprintf(words, size, "all values have the wrong sign");
+            snprintf(words, size, "All values have the wrong sign.");
         } else {
-            snprintf(words, size, "all values are %.6g times what they should be", factor);
+            snprintf(words, size, "All values are %.6g times what they should be.", factor);
         }
     } else if (is_reversed(columns, count, values, right)) {
-        snprintf(words, size, "the first and the third of every three columns are exchanged");
+        snprintf(words, size, "The first and the third of every three columns are exchanged.");
     } else if (is_transposed(columns, count, values, right)) {
-        snprintf(words, size, "vectors of channels and channels of vectors are exchanged");
+        snprintf(words, size, "Vectors of channels and channels of vectors are exchanged.");
     } else {
         snprintf(words, size,
-                 "the inputs of this stage are the candidate's own: the error is made "
-                 "in it (%zu of %zu values differ)",
+                 "The inputs of this stage are the candidate's own: the error is made "
+                 "in it (%zu of %zu values differ).",
                  count_different(count, values, right), count);
     }
 }

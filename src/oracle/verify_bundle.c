@@ -104,15 +104,15 @@ static void describe(const comparison *c, assay_verdict_kind kind, char *words, 
     words[0] = '\0';
     if (kind == ASSAY_VERDICT_CANNOT_TELL) {
         snprintf(words, size, "%s",
-                 c->count == 0               ? "the array is empty"
-                 : 2 * c->unknown > c->count ? "most of its values have no bound"
-                                             : "all bounds are as large as what they bound: "
-                                               "this precision decides nothing here");
+                 c->count == 0               ? "The array is empty."
+                 : 2 * c->unknown > c->count ? "Most of its values have no bound."
+                                             : "All bounds are as large as what they bound: "
+                                               "this precision decides nothing here.");
     } else if (kind == ASSAY_VERDICT_FAIL) {
         stage_meaning(c->out->columns, c->count, c->values, c->out->values, words, size);
     } else if (c->unknown + c->vacuous > 0) {
         snprintf(words, size,
-                 "of %zu values %zu have no bound and %zu one that is as large as themselves",
+                 "Of %zu values %zu have no bound and %zu one that is as large as themselves.",
                  c->count, c->unknown, c->vacuous);
     }
 }

@@ -42,11 +42,11 @@ static const uint32_t *find_count(const assay_image *image, const char *name)
 
 static double most_samples(const assay_noisy_channel *channel, size_t pixels)
 {
-    double most = channel->samples;
+    uint32_t most = 0; /* a whole number: gcc 12 for aarch64 fails on a largest double */
     for (size_t i = 0; channel->count && i < pixels; i++) {
-        most = fmax(most, channel->count[i]);
+        most = channel->count[i] > most ? channel->count[i] : most;
     }
-    return most;
+    return fmax(channel->samples, most);
 }
 
 static assay_noisy_channel find_noisy(const assay_image *image, const char *name, uint32_t samples,

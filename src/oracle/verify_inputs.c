@@ -108,9 +108,9 @@ static assay_status add_finding(assay_verdict *verdict, const char *array, const
         f.in_bounds = c->in_bounds;
     }
     f.meaning = f.kind == ASSAY_VERDICT_PASS ? NULL
-                : is_read ? "the stages after it were judged with it, but it is not the "
-                            "reference's, and no stage says whether it is right"
-                          : "it is not the reference's, and no stage says whether it is right";
+                : is_read ? "The stages after it were judged with it, but it is not the "
+                            "reference's, and no stage says whether it is right."
+                          : "It is not the reference's, and no stage says whether it is right.";
     return assay_verdict_add(verdict, &f);
 }
 

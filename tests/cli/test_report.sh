@@ -41,14 +41,24 @@ nowhere.json|$truth --reference $truth --verdict $work/nowhere.json -o $out/r.ht
 method path|$work/dir/cache $work/dir/cache -o $out/r.html
 TABLE
 refuses "report: an image without a name" 2 "empty" report "" -o "$out/r.html"
-refuses "report: a folder that is not there" 3 "$out/no/r.html" report "$truth" --reference "$truth" -o "$out/no/r.html"
+refuses "report: a folder that is not there" 3 "$out/no/r.html" \
+    report "$truth" --reference "$truth" -o "$out/no/r.html"
 head -c 3000 "$truth" > "$work/cut.exr"
-refuses "report: an image that is cut short" 2 "cut.exr" report "$work/cut.exr" --reference "$truth" -o "$out/r.html"
+refuses "report: an image that is cut short" 2 "cut.exr" \
+    report "$work/cut.exr" --reference "$truth" -o "$out/r.html"
 cp -r "$work/dir/cache" "$work/changed"
 printf x >> "$work/changed/records/position.npy"
-refuses "report: a bundle that is not what its manifest lists" 2 "records/position" report "$work/changed" --reference "$truth" -o "$out/r.html"
-printf '%s' '{"format":"assay-verdict","version":1,"candidate":"other.exr","verdict":"pass","findings":[]}' > "$work/other.json"
-refuses "report: a verdict of somebody else" 2 "other.exr" report "$work/cache.exr" "$work/dir/four.exr" --reference "$truth" --verdict "$work/other.json" -o "$out/r.html"
+refuses "report: a bundle that is not what its manifest lists" 2 "records/position" \
+    report "$work/changed" --reference "$truth" -o "$out/r.html"
+printf '{"format": "assay-bundle",' > "$work/changed/manifest.json"
+refuses "report: a bundle whose manifest is cut short" 2 "is not JSON" \
+    report "$work/changed" --reference "$truth" -o "$out/r.html"
+cat > "$work/other.json" <<'VERDICT'
+{"format":"assay-verdict","version":1,"candidate":"other.exr","verdict":"pass","findings":[]}
+VERDICT
+refuses "report: a verdict of somebody else" 2 "other.exr" \
+    report "$work/cache.exr" "$work/dir/four.exr" --reference "$truth" \
+    --verdict "$work/other.json" -o "$out/r.html"
 echo before > "$out/kept.html"
 "$assay" report "$work/small.exr" --reference "$truth" -o "$out/kept.html" 2> /dev/null
 [ "$(cat "$out/kept.html")" = before ] && [ "$(ls -A "$out")" = kept.html ]
@@ -56,16 +66,19 @@ result $? "an error leaves the page of that name as it was"
 clear_out
 
 # ---- what is written ----
-hex='"candidate_hex":null,"reference_hex":null'
-printf '%s' '{"format":"assay-verdict","version":1,"tool":"x","candidate":"c","reference":"r","verdict":"fail","exit_code":1,
- "first":1,"summary":"</script><script>hacked=1</script>","settings":{},"findings":[
- {"stage":"gbuffer","array":"P","channel":null,"test":"rounding","verdict":"pass","values":9,"place":{"row":1,"column":2},
-  "candidate":1,"reference":1,'"$hex"',"effect":null,"bound":1,"in_bounds":0.5,"ulps":1,"p":null,"log_p":null,"visible":null,"meaning":null},
- {"stage":"image","array":"R","channel":null,"test":"tile","verdict":"fail","values":9,"place":{"x":3,"y":4,"width":8,"height":8},
-  "candidate":1,"reference":2,'"$hex"',"effect":1,"bound":1,"in_bounds":9,"ulps":1,"p":0.001,"log_p":-7,"visible":1,
-  "meaning":"</td><img src=x onerror=hacked=1>"}]}' > "$work/verdict.json"
-accepts "a folder: the path with the most samples is the reference" report "$work/dir" -o "$work/all.html" -q \
-    --title '</title><script>hacked=1</script>"&'
+cat > "$work/verdict.json" <<'VERDICT'
+{"format":"assay-verdict","version":1,"tool":"x","candidate":"c","reference":"r","verdict":"fail",
+ "exit_code":1,"first":1,"summary":"</script><script>hacked=1</script>","settings":{},"findings":[
+ {"stage":"gbuffer","array":"P","channel":null,"test":"rounding","verdict":"pass","values":9,
+  "place":{"row":1,"column":2},"candidate":1,"reference":1,"candidate_hex":null,"reference_hex":null,
+  "effect":null,"bound":1,"in_bounds":0.5,"ulps":1,"p":null,"log_p":null,"visible":null,"meaning":null},
+ {"stage":"image","array":"R","channel":null,"test":"tile","verdict":"fail","values":9,
+  "place":{"x":3,"y":4,"width":8,"height":8},"candidate":1,"reference":2,
+  "candidate_hex":null,"reference_hex":null,"effect":1,"bound":1,"in_bounds":9,"ulps":1,"p":0.001,
+  "log_p":-7,"visible":1,"meaning":"</td><img src=x onerror=hacked=1>"}]}
+VERDICT
+accepts "a folder: the path with the most samples is the reference" \
+    report "$work/dir" -o "$work/all.html" -q --title '</title><script>hacked=1</script>"&'
 accepts "a bundle against an image, with a verdict" report "$work/dir/cache" --reference "$truth" \
     --verdict "$work/verdict.json" -o "$work/pair.html" -q
 sed 's/"fail"/"pass"/g; s/"first":1/"first":null/' "$work/verdict.json" > "$work/pass.json"
@@ -75,7 +88,13 @@ accepts "an image against itself" report "$truth" --reference "$truth" -o "$work
 "$assay" report "$work/dir/cache" --reference "$truth" --verdict "$work/verdict.json" -o "$work/again.html" -q
 cmp -s "$work/pair.html" "$work/again.html"
 result $? "the same page twice"
-[ "$(grep -c 'class="candidate"' "$work/all.html")" -eq 3 ] && grep 'class="reference"' "$work/all.html" | grep -q '"name":"truth"'
+cp -r "$work/dir/cache" "$work/cache"
+sed -i '/"sha256"/d; s/\("shape":.*\]\),$/\1/' "$work/cache/manifest.json"
+"$assay" report "$work/cache" --reference "$truth" --verdict "$work/verdict.json" -o "$work/bare.html" -q
+cmp -s "$work/pair.html" "$work/bare.html"
+result $? "a bundle without digests makes the same page"
+[ "$(grep -c 'class="candidate"' "$work/all.html")" -eq 3 ] &&
+    grep 'class="reference"' "$work/all.html" | grep -q '"name":"truth"'
 result $? "three candidates, and the truth is the reference"
 [ "$(wc -c < "$work/pair.html")" -lt 200000 ]
 result $? "a small pair makes a small page"
@@ -89,22 +108,25 @@ inject() { # FROM TO SED...: the self-test behind the page's own scripts
     from=$1 to=$2
     shift 2
     sed "$@" "$from" | awk -v test=tests/support/report_selftest.js '
-        /^<\/body>$/ { print "<script>"; while ((getline line < test) > 0) print line; print "</script>" } { print }' > "$to"
+        /^<\/body>$/ { print "<script>"; while ((getline line < test) > 0) print line; print "</script>" }
+        { print }' > "$to"
 }
 
 # All pages of the folder $folder/pages in frames of one browser; $folder/console is what they say.
 browse() { # EXPECTED: pages
-    { echo '<!DOCTYPE html><meta charset="utf-8"><style>iframe { position: absolute; left: 0; top: 0 }</style><body>'
+    { echo '<!DOCTYPE html><meta charset="utf-8">'
+      echo '<style>iframe { position: absolute; left: 0; top: 0 }</style><body>'
       for page in "$folder"/pages/*.html; do
           echo "<iframe src=\"pages/${page##*/}\" width=\"1200\" height=\"900\"></iframe>"
       done; } > "$folder/frames.html"
     : > "$folder/console"
     timeout -k 5 150 chromium --headless --no-sandbox --disable-gpu --no-first-run --enable-logging=stderr \
         --disable-extensions --disable-background-timer-throttling --disable-renderer-backgrounding \
-        --disable-backgrounding-occluded-windows --window-size=1280,960 --user-data-dir="$folder/profile" --remote-debugging-port=0 "file://$folder/frames.html" \
-        > "$folder/console" 2>&1 &
+        --disable-backgrounding-occluded-windows --window-size=1280,960 --remote-debugging-port=0 \
+        --user-data-dir="$folder/profile" "file://$folder/frames.html" > "$folder/console" 2>&1 &
     browser=$!
-    while kill -0 $browser 2> /dev/null && [ "$(grep -c 'CONSOLE.*"SELFTEST' "$folder/console")" -lt "$1" ]; do
+    while kill -0 $browser 2> /dev/null &&
+        [ "$(grep -c 'CONSOLE.*"SELFTEST' "$folder/console")" -lt "$1" ]; do
         sleep 0.2
     done
     kill $browser 2> /dev/null
@@ -122,7 +144,8 @@ for page in all pair pass; do
     [ $code -eq 0 ] || grep "SELFTEST $page.html" "$folder/console" | sed 's/^/# /'
     result $code "$page.html works in a browser"
 done
-grep 'SELFTEST same.html fails: every picture looks different; the scale changes the map"' "$folder/console" ||
+equal='every picture looks different; the scale changes the map'
+grep -q "SELFTEST same.html fails: $equal\"" "$folder/console" ||
     ! grep 'SELFTEST same.html' "$folder/console" | sed 's/^/# /'
 result $? "equal images look equal: the one check that must fail, fails"
 ! grep 'CONSOLE' "$folder/console" | grep -v 'SELFTEST' | sed 's/^/# /' | grep .

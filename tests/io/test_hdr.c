@@ -17,21 +17,6 @@
 #include "support/broken.h"
 #include "support/failing_context.h"
 
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
-
 typedef enum { CODING_FLAT, CODING_OLD, CODING_NEW, CODING_COUNT } row_coding;
 
 typedef struct {
@@ -328,11 +313,14 @@ static void refused_memory_is_reported(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(every_coding_of_rows_is_read, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(rows_may_change_coding, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(exposures_are_divided_out, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(headers_are_judged, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(malformed_rows_are_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(every_coding_of_rows_is_read, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(rows_may_change_coding, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(exposures_are_divided_out, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(headers_are_judged, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(malformed_rows_are_refused, counted_set_up,
+                                        counted_tear_down),
         cmocka_unit_test(broken_files_are_refused),
         cmocka_unit_test(refused_memory_is_reported)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -13,21 +13,6 @@
 #include "assay/image.h"
 #include "support/failing_context.h"
 
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
-
 static void sizes_are_limited(void **state)
 {
     static const int bad[][2] = {{0, 1},     {1, 0},         {-1, 5},        {65537, 1},
@@ -177,10 +162,13 @@ static void refused_memory_is_reported(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(sizes_are_limited, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(channels_are_sorted_and_unique, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(attributes_are_sorted_and_replaced, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(digest_is_sha256_of_the_stated_bytes, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(sizes_are_limited, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(channels_are_sorted_and_unique, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(attributes_are_sorted_and_replaced, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(digest_is_sha256_of_the_stated_bytes, counted_set_up,
+                                        counted_tear_down),
         cmocka_unit_test(refused_memory_is_reported)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

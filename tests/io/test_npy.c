@@ -16,21 +16,6 @@
 #include "support/failing_context.h"
 #include "support/temporary.h"
 
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
-
 static const uint64_t special_bits[] = {
     0x0000000000000000u, 0x8000000000000000u, 0x0000000000000001u, 0x800fffffffffffffu,
     0x0010000000000000u, 0x7fefffffffffffffu, 0x7ff0000000000000u, 0xfff0000000000000u,
@@ -272,13 +257,14 @@ static void refused_memory_is_reported(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(tables_are_zero_and_limited, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(round_trip_is_bit_exact, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(accepted_headers, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(half_values, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(refused_headers, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(tables_are_zero_and_limited, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(round_trip_is_bit_exact, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(accepted_headers, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(half_values, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(refused_headers, counted_set_up, counted_tear_down),
         cmocka_unit_test(broken_files_are_refused),
-        cmocka_unit_test_setup_teardown(files_are_told, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(files_are_told, counted_set_up, counted_tear_down),
         cmocka_unit_test(refused_memory_is_reported)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,21 +15,6 @@
 #include "support/failing_context.h"
 #include "support/near.h"
 
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
-
 static const assay_rgb BLACK = {0.0, 0.0, 0.0};
 
 /* What is missing to white, in pixels. */
@@ -239,13 +224,17 @@ static void refused_memory_and_bad_functions(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(strokes_have_their_area, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(strokes_are_cut_off, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(letters_stay_in_their_boxes, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(curves_are_where_their_points_are, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(bad_plots, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(lobes_point_along_their_axes, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(refused_memory_and_bad_functions, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(strokes_have_their_area, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(strokes_are_cut_off, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(letters_stay_in_their_boxes, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(curves_are_where_their_points_are, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(bad_plots, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(lobes_point_along_their_axes, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(refused_memory_and_bad_functions, counted_set_up,
+                                        counted_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,21 +16,6 @@
 #include "support/failing_context.h"
 #include "support/temporary.h"
 
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
-
 /* Linear value at which code k + 1/2 begins, in long double. */
 static long double border(int k)
 {
@@ -193,8 +178,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_curve_is_exact),
-        cmocka_unit_test_setup_teardown(layers_are_drawn, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(what_cannot_be_drawn_is_told, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(layers_are_drawn, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(what_cannot_be_drawn_is_told, counted_set_up,
+                                        counted_tear_down),
         cmocka_unit_test(refused_memory_is_reported)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

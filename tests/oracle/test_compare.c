@@ -16,21 +16,6 @@
 #include "support/failing_context.h"
 #include "support/near.h"
 
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
-
 static float *add(assay_image *image, const char *name)
 {
     assay_channel channel;
@@ -383,15 +368,20 @@ static void refused_memory_is_reported(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(metrics_by_hand, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(nothing_differs_in_equal_images, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(values_that_are_not_finite_are_counted, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(no_finite_pixel_gives_no_numbers, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(z_is_one_for_unbiased_renders, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(sums_are_accurate, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(common_channels_are_compared, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(metrics_by_hand, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(nothing_differs_in_equal_images, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(values_that_are_not_finite_are_counted, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(no_finite_pixel_gives_no_numbers, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(z_is_one_for_unbiased_renders, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(sums_are_accurate, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(common_channels_are_compared, counted_set_up,
+                                        counted_tear_down),
         cmocka_unit_test(the_scale_is_ordered_by_lightness),
-        cmocka_unit_test_setup_teardown(heat_maps_by_hand, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(heat_maps_by_hand, counted_set_up, counted_tear_down),
         cmocka_unit_test(refused_memory_is_reported)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

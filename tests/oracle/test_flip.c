@@ -21,21 +21,6 @@
 
 static const double ROUNDING = 4e-8;
 
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
-
 static assay_image *flip(const assay_image *a, const assay_image *b, assay_flip_kind kind,
                          const assay_metrics_options *options, assay_flip_summary *summary)
 {
@@ -478,19 +463,26 @@ static void refused_memory_is_reported(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(nothing_is_seen_between_equal_pictures, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(two_colors, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(nothing_is_seen_between_equal_pictures, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(two_colors, counted_set_up, counted_tear_down),
         cmocka_unit_test(the_scale_ends_at_one),
-        cmocka_unit_test_setup_teardown(all_pixels_by_the_definition, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(tiles_do_not_show, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(which_comes_first_does_not_count, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(summaries_are_of_the_map, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(exposures_from_the_reference, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(exposures_of_dark_references, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(the_largest_of_all_exposures, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(all_pixels_by_the_definition, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(tiles_do_not_show, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(which_comes_first_does_not_count, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(summaries_are_of_the_map, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(exposures_from_the_reference, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(exposures_of_dark_references, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(the_largest_of_all_exposures, counted_set_up,
+                                        counted_tear_down),
         cmocka_unit_test(threads_do_not_show),
-        cmocka_unit_test_setup_teardown(bad_pictures, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(bad_options, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bad_pictures, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(bad_options, counted_set_up, counted_tear_down),
         cmocka_unit_test(refused_memory_is_reported)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

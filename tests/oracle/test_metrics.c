@@ -17,21 +17,6 @@
 #include "support/near.h"
 #include "support/pictures.h"
 
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
-
 static double ssim(const assay_image *a, const assay_image *b, double exposure)
 {
     assay_metrics_options options = assay_metrics_defaults();
@@ -322,17 +307,21 @@ static void refused_memory_is_reported(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(ssim_of_constants, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(ssim_looks_at_luminance, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(ssim_of_equal_pictures_is_one, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(ssim_needs_a_window, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(ssim_by_the_definition, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(ssim_of_constants, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(ssim_looks_at_luminance, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(ssim_of_equal_pictures_is_one, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(ssim_needs_a_window, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(ssim_by_the_definition, counted_set_up, counted_tear_down),
         cmocka_unit_test(ssim_is_the_same_for_all_threads),
-        cmocka_unit_test_setup_teardown(ssim_refuses_what_is_no_picture, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(values_that_are_not_finite_are_named, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(colors_by_hand, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(magma_is_as_published, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(magma_is_ordered_by_lightness, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(ssim_refuses_what_is_no_picture, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(values_that_are_not_finite_are_named, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(colors_by_hand, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(magma_is_as_published, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(magma_is_ordered_by_lightness, counted_set_up,
+                                        counted_tear_down),
         cmocka_unit_test(refused_memory_is_reported)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

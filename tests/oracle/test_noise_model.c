@@ -15,21 +15,6 @@
 
 enum { SIDE = 12, TILE = 4, PIXELS = SIDE * SIDE, IN_TILE = TILE * TILE };
 
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
-
 /* Variances of the nine tiles, row by row; means are 2 and 1; 5 and 9 samples. */
 typedef struct {
     float            c[PIXELS], r[PIXELS], vc[PIXELS], vr[PIXELS];
@@ -200,9 +185,9 @@ static void probabilities(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(by_hand, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(by_counts, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(without_a_variance, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(by_hand, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(by_counts, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(without_a_variance, counted_set_up, counted_tear_down),
         cmocka_unit_test(probabilities),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

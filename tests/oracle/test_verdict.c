@@ -17,21 +17,6 @@
 #include "support/reference_table.h"
 #include "support/schema.h"
 
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
-
 static assay_finding finding(const char *stage, const char *array, assay_verdict_kind kind)
 {
     assay_finding f = assay_finding_default();
@@ -385,16 +370,18 @@ static void every_refused_block(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(whole_of_all_kinds, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(nothing_tested_does_not_pass, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(first_stage_then_farthest, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(refused, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(settings, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(json_follows_its_schema, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(junit_is_well_formed, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(junit_skips_the_unseen, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(annotations_are_lines, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(words, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(whole_of_all_kinds, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(nothing_tested_does_not_pass, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(first_stage_then_farthest, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(refused, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(settings, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(json_follows_its_schema, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(junit_is_well_formed, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(junit_skips_the_unseen, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(annotations_are_lines, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(words, counted_set_up, counted_tear_down),
         cmocka_unit_test(every_refused_block),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

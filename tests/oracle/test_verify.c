@@ -21,21 +21,6 @@
 
 enum { SIDE = NORMAL_IMAGES_SIDE, PIXELS = SIDE * SIDE };
 
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
-
 static void same_light_passes(void **state)
 {
     assay_image *c         = normal_images_make(*state, 1, 0.5, 64),
@@ -475,22 +460,28 @@ static void corrections(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(same_light_passes, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(whole_by_hand, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(leak_in_one_tile, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(rare_light_missed, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(one_pixel, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(firefly_is_told, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(detection_that_was_asked, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(alone_without_variance, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(rounding_is_no_difference, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(runs_show_noise_that_hangs_together, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(runs_of_independent_pixels, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(equivalence, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(equivalence_of_each_tile, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(stages_in_the_lights_order, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(same_light_passes, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(whole_by_hand, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(leak_in_one_tile, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(rare_light_missed, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(one_pixel, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(firefly_is_told, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(detection_that_was_asked, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(alone_without_variance, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(rounding_is_no_difference, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(runs_show_noise_that_hangs_together, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(runs_of_independent_pixels, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(equivalence, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(equivalence_of_each_tile, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(stages_in_the_lights_order, counted_set_up,
+                                        counted_tear_down),
         cmocka_unit_test(same_for_any_threads),
-        cmocka_unit_test_setup_teardown(corrections, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(corrections, counted_set_up, counted_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

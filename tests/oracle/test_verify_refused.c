@@ -17,21 +17,6 @@
 
 enum { SIDE = NORMAL_IMAGES_SIDE };
 
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
-
 static void expect_problem(assay_context *context, const assay_image *c, const assay_image *r,
                            const char *channels, const char *test, const char *words)
 {
@@ -269,14 +254,15 @@ static void every_refused_block(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(bad_values, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(missing_channels, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(runs_that_are_one, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(reference_without_variance, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(refused, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(metadata, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(metadata_of_methods, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(every_refused_block, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(bad_values, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(missing_channels, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(runs_that_are_one, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(reference_without_variance, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(refused, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(metadata, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(metadata_of_methods, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(every_refused_block, counted_set_up, counted_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,21 +21,6 @@
 
 static const long double PI_L = 3.14159265358979323846264338327950288L;
 
-static failing_memory memory;
-
-static int set_up(void **state)
-{
-    *state = failing_context(&memory);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    assert_int_equal(memory.live, 1);
-    assay_context_destroy(*state);
-    return 0;
-}
-
 /* ---- maps ---- */
 
 typedef assay_rgb (*texel_function)(int column, int row);
@@ -470,18 +455,27 @@ static void shared_maps_light_scenes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(main_directions, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(every_texel_is_where_it_should_be, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(densities_integrate_to_one, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(integrals_are_sums_over_texels, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(samples_know_their_density, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(luminance_over_density_is_constant, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(samples_follow_the_density, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(samples_are_uniform_inside_texels, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(poles_are_like_any_place, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_black_map_is_legal, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(bad_maps_are_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(main_directions, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(every_texel_is_where_it_should_be, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(densities_integrate_to_one, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(integrals_are_sums_over_texels, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(samples_know_their_density, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(luminance_over_density_is_constant, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(samples_follow_the_density, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(samples_are_uniform_inside_texels, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(poles_are_like_any_place, counted_set_up,
+                                        counted_tear_down),
+        cmocka_unit_test_setup_teardown(a_black_map_is_legal, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(bad_maps_are_refused, counted_set_up, counted_tear_down),
         cmocka_unit_test(refused_memory_is_reported),
-        cmocka_unit_test_setup_teardown(shared_maps_light_scenes, set_up, tear_down)};
+        cmocka_unit_test_setup_teardown(shared_maps_light_scenes, counted_set_up,
+                                        counted_tear_down)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -63,6 +63,21 @@ assay_context *failing_context(failing_memory *memory)
     return context;
 }
 
+static failing_memory COUNTED;
+
+int counted_set_up(void **state)
+{
+    *state = failing_context(&COUNTED);
+    return 0;
+}
+
+int counted_tear_down(void **state)
+{
+    assert_int_equal(COUNTED.live, 1);
+    assay_context_destroy(*state);
+    return 0;
+}
+
 int failing_each(assay_status (*work)(assay_context *context, void *user), void *user)
 {
     for (int n = 1; n < 10000; n++) {

@@ -18,6 +18,11 @@ typedef struct {
 /* A context on the counted memory, one thread.  *memory is reset but for fail_at and cancel_at. */
 assay_context *failing_context(failing_memory *memory);
 
+/* A test's set-up and tear-down: *state is a context of counted memory that refuses nothing, and
+ * all that the test made must be gone in the end.  One at a time. */
+int counted_set_up(void **state);
+int counted_tear_down(void **state);
+
 /* Calls `work` with the 1st, 2nd, ... block refused until it succeeds.  Fails the test unless each
  * refusal gives ASSAY_ERR_MEMORY with a message and nothing is left allocated.  work must release
  * all that it makes.  Returns the number of refusals. */

@@ -13,7 +13,8 @@
   async function settled() {
     for (let quiet = 0, last = ""; quiet < 3;) {
       await wait(15);
-      const now = `${document.body.dataset.painted} ${document.body.dataset.thumbnails} ${$("pixel").textContent}`;
+      const { painted, thumbnails } = document.body.dataset;
+      const now = `${painted} ${thumbnails} ${$("pixel").textContent}`;
       quiet = now === last ? quiet + 1 : 0;
       last = now;
     }
@@ -26,20 +27,25 @@
     return reader.getImageData(0, 0, canvas.width, canvas.height).data;
   }
   const sum = (canvas) => pixels(canvas).reduce((total, value) => total + value, 0);
-  const print = (canvas) => pixels(canvas).reduce((hash, value) => Math.imul(hash ^ value, 16777619) >>> 0, 2166136261);
+  const mix = (hash, value) => Math.imul(hash ^ value, 16777619) >>> 0;
+  const print = (canvas) => pixels(canvas).reduce(mix, 2166136261);
   const isName = (text) => typeof text === "string" && text.trim() !== "";
   const number = (text) => parseFloat(text.replace("−", "-").replace("e−", "e-"));
 
   async function started() {
-    for (let i = 0; i < 400 && !(document.body.dataset.painted && document.body.dataset.thumbnails); i++) await wait(25);
-    check(document.body.dataset.painted, "the pictures are painted");
+    const { dataset } = document.body;
+    for (let i = 0; i < 400 && !(dataset.painted && dataset.thumbnails); i++) await wait(25);
+    check(dataset.painted, "the pictures are painted");
   }
 
   function texts() {
-    check(isName($("title").textContent) && document.title === `${$("title").textContent} - assay report`, "the title is the title");
-    check(all("h1 *, #subtitle *, .thumb-name > :not(kbd), td script, td img, th img").length === 0, "no text became an element");
-    check(all("main *, header *").every((element) => ![...element.childNodes].some((node) =>
-      node.nodeType === 3 && /\b(null|undefined|NaN|\[object)/.test(node.data))), "nothing that is missing is written out");
+    const title = $("title").textContent;
+    check(isName(title) && document.title === `${title} - assay report`, "the title is the title");
+    const intruders = "h1 *, #subtitle *, .thumb-name > :not(kbd), td script, td img, th img";
+    check(all(intruders).length === 0, "no text became an element");
+    const isMissing = (node) => node.nodeType === 3 && /\b(null|undefined|NaN|\[object)/.test(node.data);
+    const writesMissing = (element) => [...element.childNodes].some(isMissing);
+    check(!all("main *, header *").some(writesMissing), "nothing that is missing is written out");
     check(globalThis.hacked === undefined, "no text was run");
     const ids = all("[id]").map((element) => element.id);
     check(new Set(ids).size === ids.length, "every id is there once");
@@ -48,30 +54,41 @@
 
   function names() {
     for (const element of all("button, input, select, [role=slider]")) {
-      const name = element.getAttribute("aria-label") || element.textContent || [...(element.labels ?? [])].map((label) => label.textContent).join("");
+      const labels = [...(element.labels ?? [])].map((label) => label.textContent).join("");
+      const name = element.getAttribute("aria-label") || element.textContent || labels;
       check(isName(name), `${element.tagName} #${element.id} has a name`);
     }
-    for (const svg of all("#histograms svg, #curves svg")) check(isName(svg.getAttribute("aria-label")), "a chart has a name");
+    for (const svg of all("#histograms svg, #curves svg")) {
+      check(isName(svg.getAttribute("aria-label")), "a chart has a name");
+    }
     for (const id of ["stage", "divider"]) check($(id).tabIndex === 0, `${id} can be reached by keyboard`);
-    check(all("[tabindex]").every((element) => element.tabIndex <= 0), "the order of Tab is that of the page");
+    const isInOrder = (element) => element.tabIndex <= 0;
+    check(all("[tabindex]").every(isInOrder), "the order of Tab is that of the page");
   }
 
   async function divider() {
-    const handle = $("divider"), now = () => +handle.getAttribute("aria-valuenow"), clip = () => getComputedStyle($("pane-right")).clipPath;
-    const before = now(), clipped = clip(), moved = handle.getBoundingClientRect().left;
+    const stage = $("stage"), handle = $("divider");
+    const now = () => +handle.getAttribute("aria-valuenow");
+    const clip = () => getComputedStyle($("pane-right")).clipPath;
+    const left = () => handle.getBoundingClientRect().left;
+    const before = now(), clipped = clip(), stood = left();
     press("ArrowRight", handle);
     check(now() > before, "the arrow moves the divider");
     check(clip() !== clipped, "the picture is cut at the divider");
-    check(handle.getBoundingClientRect().left > moved, "the handle goes with it");
+    check(left() > stood, "the handle goes with it");
     press("Home", handle);
     check(now() === 0, "Home takes it to the left");
     press("End", handle);
     check(now() === 100, "End takes it to the right");
-    const box = $("stage").getBoundingClientRect(), at = (x) => ({ clientX: box.left + x * box.width, clientY: box.top + 50, button: 0, pointerId: 1, pointerType: "mouse", bubbles: true });
-    $("stage").setPointerCapture = () => {};
-    handle.dispatchEvent(new PointerEvent("pointerdown", at(0.9)));
-    $("stage").dispatchEvent(new PointerEvent("pointermove", at(0.5)));
-    $("stage").dispatchEvent(new PointerEvent("pointerup", at(0.5)));
+    const box = stage.getBoundingClientRect();
+    const point = (target, type, x) => target.dispatchEvent(new PointerEvent(type, {
+      clientX: box.left + x * box.width, clientY: box.top + 50,
+      button: 0, pointerId: 1, pointerType: "mouse", bubbles: true,
+    }));
+    stage.setPointerCapture = () => {};
+    point(handle, "pointerdown", 0.9);
+    point(stage, "pointermove", 0.5);
+    point(stage, "pointerup", 0.5);
     check(Math.abs(now() - 50) < 3, "the pointer drags it");
   }
 
@@ -81,7 +98,8 @@
       radio.click();
       await settled();
       seen.add(print(right));
-      check($("legend").hidden === ["reference", "candidate"].includes(radio.value), `${radio.value}: a map has a scale`);
+      const isColour = ["reference", "candidate"].includes(radio.value);
+      check($("legend").hidden === isColour, `${radio.value}: a map has a scale`);
     }
     check(seen.size === radios.length, "every picture looks different");
     press("2");
@@ -102,12 +120,13 @@
   }
 
   async function exposure() {
-    const left = $("canvas-left"), before = print(left), light = sum(left), thumb = print(all("#pictures canvas")[0]);
+    const left = $("canvas-left"), small = all("#pictures canvas")[0];
+    const before = print(left), light = sum(left), thumb = print(small);
     press("[");
     press("[");
     await settled();
     check(sum(left) < light, "less exposure is darker");
-    check(print(all("#pictures canvas")[0]) !== thumb, "in the small pictures, too");
+    check(print(small) !== thumb, "in the small pictures, too");
     $("exposure-reset").click();
     await settled();
     check(print(left) === before, "and back");
@@ -135,14 +154,16 @@
   /* What the page decodes against what was computed of the images themselves. */
   async function values() {
     for (const row of all("#channel-table tbody tr")) {
-      const cells = [...row.cells], channel = "RGB".indexOf(cells[0].textContent.trim()), most = number(cells[7].textContent);
+      const name = row.cells[0].textContent.trim(), channel = "RGB".indexOf(name);
+      const most = number(row.cells[7].textContent), place = row.cells[8];
       if (!(most > 0)) continue;
-      cells[8].querySelector("button").click();
+      place.querySelector("button").click();
       await settled();
-      check($("pixel").textContent === `Pixel ${cells[8].textContent}`, "the place is inspected");
-      const [a, b] = [...$("values").tBodies[0].rows].slice(0, 2).map((r) => number(r.cells[channel + 1].textContent));
+      check($("pixel").textContent === `Pixel ${place.textContent}`, "the place is inspected");
+      const colours = [...$("values").tBodies[0].rows].slice(0, 2);
+      const [a, b] = colours.map((colour) => number(colour.cells[channel + 1].textContent));
       const off = 0.004 * (Math.abs(a) + Math.abs(b)) + 0.006 * most;
-      check(Math.abs(Math.abs(b - a) - most) <= off, `${cells[0].textContent}: ${a} and ${b} differ by ${most}`);
+      check(Math.abs(Math.abs(b - a) - most) <= off, `${name}: ${a} and ${b} differ by ${most}`);
     }
     $("stage").focus();
     const before = $("pixel").textContent;
@@ -155,7 +176,9 @@
   }
 
   function charts() {
-    for (const svg of all("#histograms figure:not(:has(.nothing)) svg")) check(svg.querySelectorAll("rect, path").length > 1, "a histogram is drawn");
+    for (const svg of all("#histograms figure:not(:has(.nothing)) svg")) {
+      check(svg.querySelectorAll("rect, path").length > 1, "a histogram is drawn");
+    }
     check(all("#histograms figure").length === 3, "three histograms");
     if ($("convergence").hidden) return;
     const before = $("curves").innerHTML;
@@ -201,7 +224,8 @@
   function verdict() {
     if ($("verdict").hidden) return;
     const link = document.querySelector("#verdict a");
-    check(!link || document.querySelector(link.getAttribute("href"))?.hasAttribute("data-first"), "the link goes to the first failure");
+    const isFirst = (id) => document.querySelector(id)?.hasAttribute("data-first");
+    check(!link || isFirst(link.getAttribute("href")), "the link goes to the first failure");
     check(all("#findings tbody tr[id]").length > 0, "the stages are listed");
   }
 
@@ -219,12 +243,15 @@
   }
 
   const name = decodeURIComponent(location.pathname).replace(/.*\//, "");
+  const steps = [texts, names, charts, divider, pictures, exposure, views, values, theme, records, candidates,
+    verdict, help, parameters];
   try {
     await started();
     await settled();
-    for (const step of [texts, names, charts, divider, pictures, exposure, views, values, theme, records, candidates, verdict, help, parameters]) await step();
+    for (const step of steps) await step();
   } catch (error) {
     wrong.push(String(error));
   }
-  console.log(`SELFTEST ${name} ${wrong.length ? "fails: " + [...new Set(wrong)].join("; ") : "passes"}`);
+  const outcome = wrong.length ? "fails: " + [...new Set(wrong)].join("; ") : "passes";
+  console.log(`SELFTEST ${name} ${outcome}`);
 })();

@@ -8,7 +8,9 @@ const readJson = (element) => JSON.parse(element.textContent);
 const page = readJson(document.querySelector("script.page"));
 const reference = readJson(document.querySelector("script.reference"));
 const candidates = [...document.querySelectorAll("script.candidate")].map(readJson);
-for (const entry of candidates) entry.channels.sort((a, b) => "RGB".indexOf(a.channel) - "RGB".indexOf(b.channel));
+for (const { channels } of candidates) {
+  channels.sort((a, b) => "RGB".indexOf(a.channel) - "RGB".indexOf(b.channel));
+}
 const WIDTH = reference.width, HEIGHT = reference.height, PIXELS = WIDTH * HEIGHT;
 
 function bytesOf(base64) {

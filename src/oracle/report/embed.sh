@@ -7,8 +7,8 @@ page=$(mktemp)
 trap 'rm -f "$page"' EXIT
 awk '/^@STYLE@$/ { while ((getline line < "report.css") > 0) print line; next }
      /^@SCRIPT@$/ { print "\"use strict\";"; print "(() => {"
-                    n = split("data.js colour.js stage.js viewer.js charts.js tables.js report.js", files, " ")
-                    for (i = 1; i <= n; i++) while ((getline line < files[i]) > 0) print line
+                    n = split("data colour stage viewer charts tables report", names, " ")
+                    for (i = 1; i <= n; i++) while ((getline line < (names[i] ".js")) > 0) print line
                     print "})();"; next }
      { print }' report.html > "$page"
 

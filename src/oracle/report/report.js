@@ -10,20 +10,30 @@ function showCandidate() {
   $("records-row").hidden = circles.length === 0;
   $("records-count").textContent = records ? `${count(circles.length / 4)} of ${count(records.count)}` : "";
   const reached = reachOf(shown());
-  $("records-about").textContent = reached < 1 ? `Circles: a R with a = ${format(reached)}, as far as a record reaches.` : "Circles: R of a record.";
+  $("records-about").textContent = reached < 1
+    ? `Circles: a R with a = ${format(reached)}, as far as a record reaches.`
+    : "Circles: R of a record.";
   setRecords(state.records);
 }
 
+/* Those that differ between candidates. */
+function costsOfUse() {
+  return Object.keys(COSTS).filter((cost) => new Set(pointsBy(cost).map((p) => p.x)).size > 1);
+}
+
 function buildConvergence() {
-  const costs = Object.keys(COSTS).filter((cost) => new Set(pointsBy(cost).map((p) => p.x)).size > 1);
+  const costs = costsOfUse();
   $("convergence").hidden = costs.length === 0;
   window.addEventListener("resize", () => {
     if (!matchMedia("print").matches) drawConvergence();
   });
   if (costs.length === 0) return;
   const chosen = costs.includes("seconds") ? "seconds" : costs[0];
-  $("costs").append(...costs.map((cost) => make("label", {}, make("input", { type: "radio", name: "cost", value: cost, checked: cost === chosen,
-    onchange: drawConvergence }), make("span", {}, COSTS[cost].label))));
+  $("costs").append(...costs.map((cost) => make("label", {},
+    make("input", {
+      type: "radio", name: "cost", value: cost, checked: cost === chosen, onchange: drawConvergence,
+    }),
+    make("span", {}, COSTS[cost].label))));
   drawConvergence();
 }
 
@@ -35,24 +45,34 @@ function drawConvergence() {
 function sayHonestly() {
   const entry = shown(), off = Math.max(roundingOf(reference.colour), roundingOf(entry.colour));
   const maps = Math.max(...Object.values(entry.maps).map(roundingOf));
-  $("honesty").textContent = `All numbers, histograms and maps were computed from the images at full precision. Only for showing, the pictures are kept rounded: `
-    + `colours to ${percent(off, 1)} of their value, maps to ${percent(maps, 1)}, finer than a screen can show; values under the pointer are the rounded ones. `
-    + `Pictures are sRGB with one exposure for all of them, clipped at 1; negative values are black, what is not a number is green. `
-    + `Written by assay ${page.tool}; this file asks the network for nothing.`;
+  $("honesty").textContent = [
+    "All numbers, histograms and maps were computed from the images at full precision.",
+    "Only for showing, the pictures are kept rounded:",
+    `colours to ${percent(off, 1)} of their value, maps to ${percent(maps, 1)},`,
+    "finer than a screen can show; values under the pointer are the rounded ones.",
+    "Pictures are sRGB with one exposure for all of them, clipped at 1;",
+    "negative values are black, what is not a number is green.",
+    `Written by assay ${page.tool}; this file asks the network for nothing.`,
+  ].join(" ");
 }
 
 function describePage() {
   $("title").textContent = page.title;
   const names = candidates.length === 1 ? candidates[0].name : `${candidates.length} candidates`;
-  const truth = [reference.method, reference.samples ? `${format(reference.samples)} samples a pixel` : null].filter(Boolean).join(", ");
-  $("subtitle").textContent = `${names} against ${reference.name}${truth ? ` (${truth})` : ""} · ${WIDTH} × ${HEIGHT} pixels`;
+  const samples = reference.samples ? `${format(reference.samples)} samples a pixel` : null;
+  const truth = [reference.method, samples].filter(Boolean).join(", ");
+  const how = truth ? ` (${truth})` : "", size = `${WIDTH} × ${HEIGHT} pixels`;
+  $("subtitle").textContent = `${names} against ${reference.name}${how} · ${size}`;
 }
 
 /* ---- theme ---- */
 
 const THEMES = ["auto", "light", "dark"];
+const following = (list, one) => list[(list.indexOf(one) + 1) % list.length];
+
 function nextTheme() {
-  const root = document.documentElement, next = THEMES[(THEMES.indexOf(root.dataset.theme ?? "auto") + 1) % 3];
+  const root = document.documentElement;
+  const next = following(THEMES, root.dataset.theme ?? "auto");
   root.dataset.theme = next;
   $("theme-name").textContent = next;
   drawOverlay();
@@ -68,21 +88,22 @@ function pixelAt(event) {
     else x %= width;
   }
   const px = Math.floor((x - view.x) / view.scale), py = Math.floor((y - view.y) / view.scale);
-  return { x, y, pixel: px >= 0 && py >= 0 && px < WIDTH && py < HEIGHT ? { x: px, y: py } : null };
+  const isInside = px >= 0 && py >= 0 && px < WIDTH && py < HEIGHT;
+  return { x, y, pixel: isInside ? { x: px, y: py } : null };
 }
 
 function listenToPointer() {
   const stage = $("stage"), divider = $("divider");
   let drag = null;
   const dragDivider = (event) => {
-    const box = stage.getBoundingClientRect(), { width } = paneSize();
-    const from = clamp(view.x, 0, width), to = clamp(view.x + view.scale * WIDTH, 0, width);
+    const box = stage.getBoundingClientRect(), [from, to] = dividerRange();
     moveDivider((event.clientX - box.left - from) / Math.max(to - from, 1));
   };
   stage.addEventListener("pointerdown", (event) => {
     if (event.button !== 0) return;
     const onDivider = divider.contains(event.target);
-    drag = { divider: onDivider || (state.mode === "slider" && view.fitted && event.pointerType !== "mouse"), x: event.clientX, y: event.clientY };
+    const byTouch = state.mode === "slider" && view.fitted && event.pointerType !== "mouse";
+    drag = { divider: onDivider || byTouch, x: event.clientX, y: event.clientY };
     stage.setPointerCapture(event.pointerId);
     if (onDivider) divider.focus();
     stage.classList.add("dragging");
@@ -118,10 +139,12 @@ function listenToPointer() {
 
 /* ---- keys ---- */
 
-const middle = () => {
-  const { width, height } = paneSize();
-  return state.pixel && !view.fitted ? [view.x + view.scale * (state.pixel.x + 0.5), view.y + view.scale * (state.pixel.y + 0.5)] : [width / 2, height / 2];
-};
+/* About what the keys zoom: the pixel that is inspected, before that the middle. */
+function middle() {
+  const { width, height } = paneSize(), { pixel } = state;
+  if (!pixel || view.fitted) return [width / 2, height / 2];
+  return [view.x + view.scale * (pixel.x + 0.5), view.y + view.scale * (pixel.y + 0.5)];
+}
 
 const KEYS = [
   ["1 – 6", "picture at the right: reference, candidate, then the maps"],
@@ -138,11 +161,9 @@ const KEYS = [
   ["?", "this list"],
 ];
 
+const MODES = ["slider", "sides", "single"];
 const ACTIONS = {
-  v: () => {
-    const modes = ["slider", "sides", "single"];
-    chooseMode(modes[(modes.indexOf(state.mode) + 1) % 3]);
-  },
+  v: () => chooseMode(following(MODES, state.mode)),
   " ": () => {
     if (state.mode !== "single") chooseMode("single");
     else {
@@ -166,9 +187,11 @@ const ACTIONS = {
 };
 
 function onDividerKey(event) {
-  const step = event.shiftKey ? 0.01 : 0.05;
-  const to = { ArrowLeft: state.divider - step, ArrowDown: state.divider - step, ArrowRight: state.divider + step, ArrowUp: state.divider + step,
-    Home: 0, End: 1, PageDown: state.divider - 0.2, PageUp: state.divider + 0.2 }[event.key];
+  const at = state.divider, step = event.shiftKey ? 0.01 : 0.05;
+  const to = {
+    ArrowLeft: at - step, ArrowDown: at - step, PageDown: at - 0.2, Home: 0,
+    ArrowRight: at + step, ArrowUp: at + step, PageUp: at + 0.2, End: 1,
+  }[event.key];
   if (to === undefined) return false;
   moveDivider(to);
   return true;
@@ -178,28 +201,30 @@ function onStageKey(event) {
   const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
   if (!by) return false;
   const from = state.pixel ?? { x: WIDTH >> 1, y: HEIGHT >> 1 }, step = event.shiftKey ? 10 : 1;
-  inspect({ x: clamp(from.x + step * by[0], 0, WIDTH - 1), y: clamp(from.y + step * by[1], 0, HEIGHT - 1) });
+  const x = from.x + step * by[0], y = from.y + step * by[1];
+  inspect({ x: clamp(x, 0, WIDTH - 1), y: clamp(y, 0, HEIGHT - 1) });
+  return true;
+}
+
+/* A key of the whole page: a picture by its number, or an action. */
+function onPageKey({ key, target }) {
+  const moves = key.startsWith("Arrow") || ["Home", "End", "PageUp", "PageDown"].includes(key);
+  const presses = key === " " && target.matches("button, a, input, [type=checkbox]");
+  if (moves || presses) return false;
+  const names = PICTURES.filter(available);
+  if (key >= "1" && key <= String(names.length)) choosePicture(names[key - 1]);
+  else if (key in ACTIONS) ACTIONS[key]();
+  else return false;
   return true;
 }
 
 function onKey(event) {
   if (event.ctrlKey || event.metaKey || event.altKey || $("help").open) return;
-  const target = event.target, onButton = target.matches("button, a, input, [type=checkbox]");
-  const arrows = event.key.startsWith("Arrow") || ["Home", "End", "PageUp", "PageDown"].includes(event.key);
-  let done = false;
-  if (target === $("stage")) done = onStageKey(event);
-  else if (target === $("divider") || (event.key === "ArrowLeft" || event.key === "ArrowRight") && target === document.body) done = onDividerKey(event);
-  if (!done && !arrows && !(onButton && event.key === " ")) {
-    const names = PICTURES.filter(available);
-    if (event.key >= "1" && event.key <= String(names.length)) {
-      choosePicture(names[event.key - 1]);
-      done = true;
-    } else if (event.key in ACTIONS) {
-      ACTIONS[event.key]();
-      done = true;
-    }
-  }
-  if (done) event.preventDefault();
+  const { key, target } = event;
+  const sideways = key === "ArrowLeft" || key === "ArrowRight";
+  const onDivider = target === $("divider") || (target === document.body && sideways);
+  const done = (target === $("stage") && onStageKey(event)) || (onDivider && onDividerKey(event));
+  if (done || onPageKey(event)) event.preventDefault();
 }
 
 function listen() {
@@ -228,9 +253,15 @@ function listen() {
   new ResizeObserver(() => view.fitted ? fit() : place()).observe($("stage"));
 }
 
+function listKeys() {
+  const show = (key) => key === "–" ? " – " : make("kbd", {}, key);
+  $("keys").append(...KEYS.flatMap(([keys, what]) =>
+    [make("dt", {}, ...keys.split(" ").map(show)), make("dd", {}, what)]));
+}
+
 function start() {
   $("stage").style.setProperty("--shape", `${WIDTH} / ${HEIGHT}`);
-  $("keys").append(...KEYS.flatMap(([keys, what]) => [make("dt", {}, ...keys.split(" ").map((key) => key === "–" ? " – " : make("kbd", {}, key))), make("dd", {}, what)]));
+  listKeys();
   describePage();
   buildCandidates();
   buildConvergence();

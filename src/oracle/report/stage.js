@@ -4,6 +4,7 @@
 
 const $ = (id) => document.getElementById(id);
 const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
+const sum = (list) => list.reduce((total, x) => total + x, 0);
 
 function make(tag, properties = {}, ...children) {
   const element = document.createElement(tag);
@@ -33,10 +34,15 @@ const shown = () => candidates[state.candidate];
 const mapOf = (name) => shown().maps[name];
 const fullScale = (name) => (state.scales[name] ?? MAPS[name].scale) || 1;
 
-/* Paints a picture into an array of pixels: "reference", "candidate" or the name of a map. */
-async function paint(name, out, candidate = shown()) {
-  const picture = name === "reference" ? reference.colour : name === "candidate" ? candidate.colour : candidate.maps[name];
-  const planes = await planesOf(picture);
+/* A picture by its name: "reference", "candidate" or that of a map. */
+function pictureOf(name) {
+  if (name === "reference") return reference.colour;
+  return name === "candidate" ? shown().colour : shown().maps[name];
+}
+
+/* Paints the picture of that name into an array of pixels. */
+async function paint(name, out) {
+  const picture = pictureOf(name), planes = await planesOf(picture);
   if (name in MAPS) paintMap(picture, planes, MAPS[name], fullScale(name), out);
   else paintColour(picture, planes, state.exposure, out);
 }
@@ -100,37 +106,47 @@ function lookAt(x, y, scale) {
 }
 
 /* The divider runs over what is visible of the image, not over the empty stage beside it. */
-function dividerAt() {
+function dividerRange() {
   const { width } = paneSize();
-  const from = clamp(view.x, 0, width), to = clamp(view.x + view.scale * WIDTH, 0, width);
-  return from + state.divider * (to - from);
+  return [clamp(view.x, 0, width), clamp(view.x + view.scale * WIDTH, 0, width)];
 }
 
-function place() {
-  const { width, height, tall } = paneSize(), stage = $("stage");
-  stage.dataset.mode = state.mode;
+function placePanes() {
+  const { width, height, tall } = paneSize();
   const left = $("pane-left"), right = $("pane-right");
-  const second = state.mode === "sides" ? (tall ? `0 ${height}px` : `${width}px 0`) : "0 0";
   for (const pane of [left, right]) {
     pane.style.width = width + "px";
     pane.style.height = height + "px";
   }
-  right.style.translate = second.split(" ").map((part) => part === "0" ? "0px" : part).join(" ");
-  for (const pane of panes) {
-    pane.canvas.style.transform = `translate(${view.x}px, ${view.y}px) scale(${view.scale})`;
-    pane.canvas.style.imageRendering = view.scale * devicePixelRatio >= 1.5 ? "pixelated" : "auto";
-  }
-  const at = dividerAt(), handle = $("divider");
-  const alone = state.mode === "single";
-  right.style.clipPath = state.mode === "slider" ? `inset(0 0 0 ${at}px)` : "none";
+  const sides = state.mode === "sides", alone = state.mode === "single";
+  const x = sides && !tall ? width : 0, y = sides && tall ? height : 0;
+  right.style.translate = `${x}px ${y}px`;
   right.style.visibility = alone && state.swapped ? "hidden" : "visible";
   left.style.visibility = alone && !state.swapped ? "hidden" : "visible";
+  for (const { canvas } of panes) {
+    canvas.style.transform = `translate(${view.x}px, ${view.y}px) scale(${view.scale})`;
+    canvas.style.imageRendering = view.scale * devicePixelRatio >= 1.5 ? "pixelated" : "auto";
+  }
+}
+
+function placeDivider() {
+  const [from, to] = dividerRange(), at = from + state.divider * (to - from);
+  const on = state.mode === "slider", handle = $("divider");
+  $("pane-right").style.clipPath = on ? `inset(0 0 0 ${at}px)` : "none";
   handle.style.transform = `translateX(${at}px)`;
-  handle.hidden = state.mode !== "slider";
-  handle.setAttribute("aria-valuenow", Math.round(100 * state.divider));
-  handle.setAttribute("aria-valuetext", `${Math.round(100 * state.divider)} % of the width shows the reference`);
+  handle.hidden = !on;
+  const percentage = Math.round(100 * state.divider);
+  handle.setAttribute("aria-valuenow", percentage);
+  handle.setAttribute("aria-valuetext", `${percentage} % of the width shows the reference`);
+}
+
+function place() {
+  $("stage").dataset.mode = state.mode;
+  placePanes();
+  placeDivider();
   drawOverlay();
-  $("zoom").textContent = view.scale >= 1 ? `${+view.scale.toFixed(2)}×` : `${Math.round(100 * view.scale)} %`;
+  const { scale } = view;
+  $("zoom").textContent = scale >= 1 ? `${+scale.toFixed(2)}×` : `${Math.round(100 * scale)} %`;
 }
 
 function moveDivider(share) {
@@ -150,6 +166,11 @@ function reachOf(entry) {
   return a && +a[1] > 0 ? +a[1] : 1;
 }
 
+function circle(context, x, y, radius) {
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+}
+
 function drawRecords(context, circles, share) {
   const faint = clamp(12 / Math.sqrt(circles.length / 4 + 1), 0.12, 0.6);
   for (const hidden of [1, 0]) {
@@ -162,23 +183,24 @@ function drawRecords(context, circles, share) {
       const x = view.x + view.scale * circles[i] / 8, y = view.y + view.scale * circles[i + 1] / 8;
       const radius = share * view.scale * circles[i + 2] / 8;
       context.globalAlpha = 1;
-      context.beginPath();
-      context.arc(x, y, clamp(0.35 * view.scale, 0.9, 2.2), 0, 2 * Math.PI);
+      circle(context, x, y, clamp(0.35 * view.scale, 0.9, 2.2));
       context.fill();
       context.globalAlpha = faint;
-      context.beginPath();
-      context.arc(x, y, radius, 0, 2 * Math.PI);
+      circle(context, x, y, radius);
       context.stroke();
     }
   }
   context.globalAlpha = 1;
 }
 
-function drawFrame(context, x, y, width, height, colour) {
-  const size = view.scale, grow = Math.max(0, (14 - size * width) / 2);
+/* A frame about pixels, where they are small a little larger than they. */
+function drawFrame(context, spot, colour) {
+  const width = view.scale * spot.width, height = view.scale * spot.height;
+  const grow = Math.max(0, (14 - width) / 2);
+  const x = view.x + view.scale * spot.x - grow, y = view.y + view.scale * spot.y - grow;
+  const box = [x, y, width + 2 * grow, height + 2 * grow];
   context.lineWidth = 3;
   context.strokeStyle = "rgba(0, 0, 0, 0.75)";
-  const box = [view.x + size * x - grow, view.y + size * y - grow, size * width + 2 * grow, size * height + 2 * grow];
   context.strokeRect(...box);
   context.lineWidth = 1.5;
   context.strokeStyle = colour;
@@ -192,15 +214,15 @@ function drawOverlay() {
   canvas.height = Math.round(stage.clientHeight * ratio);
   const context = canvas.getContext("2d"), sides = state.mode === "sides" ? 2 : 1;
   for (let side = 0; side < sides; side++) {
-    context.setTransform(ratio, 0, 0, ratio, tall ? 0 : ratio * side * width, tall ? ratio * side * height : 0);
+    const x = tall ? 0 : side * width, y = tall ? side * height : 0;
+    context.setTransform(ratio, 0, 0, ratio, ratio * x, ratio * y);
     context.save();
     context.beginPath();
     context.rect(0, 0, width, height);
     context.clip();
     if (state.records) drawRecords(context, circlesOf(shown()), reachOf(shown()));
-    const accent = overlayColours().getPropertyValue("--marker");
-    if (state.marked) drawFrame(context, state.marked.x, state.marked.y, state.marked.width, state.marked.height, accent);
-    if (state.pixel && view.scale >= 6) drawFrame(context, state.pixel.x, state.pixel.y, 1, 1, "#fff");
+    if (state.marked) drawFrame(context, state.marked, overlayColours().getPropertyValue("--marker"));
+    if (state.pixel && view.scale >= 6) drawFrame(context, { ...state.pixel, width: 1, height: 1 }, "#fff");
     context.restore();
   }
 }

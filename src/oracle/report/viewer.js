@@ -1,28 +1,42 @@
 /* viewer.js - the controls about the stage: which picture, which view, exposure, scale, values. */
 
-const format = (x, digits = 4) => x === null || x === undefined || Number.isNaN(x) ? "–"
-  : !Number.isFinite(x) ? (x > 0 ? "∞" : "−∞")
-  : (x !== 0 && (Math.abs(x) < 1e-3 || Math.abs(x) >= 1e5) ? x.toExponential(Math.max(digits - 2, 1)).replace("e+", "e")
-    : String(+x.toPrecision(digits))).replace(/-/g, "−");
-const percent = (x, digits = 3) => x === null || x === undefined || !Number.isFinite(x) ? format(x)
-  : `${format(100 * x, digits)} %`;
+function format(x, digits = 4) {
+  if (x === null || x === undefined || Number.isNaN(x)) return "–";
+  if (!Number.isFinite(x)) return x > 0 ? "∞" : "−∞";
+  const size = Math.abs(x), isPlain = size === 0 || (size >= 1e-3 && size < 1e5);
+  const text = isPlain ? String(+x.toPrecision(digits)) : x.toExponential(Math.max(digits - 2, 1));
+  return text.replace("e+", "e").replace(/-/g, "−");
+}
+
+const percent = (x, digits = 3) => Number.isFinite(x) ? `${format(100 * x, digits)} %` : format(x);
 const count = (x) => Math.round(x).toLocaleString("en").replace(/,/g, " ");
 
 const PICTURES = ["reference", "candidate", "difference", "relative", "z", "flip"];
-const available = (name) => name === "reference" || name === "candidate" || name in shown().maps;
-const labelOf = (name) => name === "reference" ? "Reference" : name === "candidate" ? "Candidate" : MAPS[name].label;
-const overall = (entry, key) => Math.sqrt(entry.channels.reduce((sum, c) => sum + c[key] ** 2, 0) / entry.channels.length);
+const COLOURS = { reference: "Reference", candidate: "Candidate" };
+const available = (name) => name in COLOURS || name in shown().maps;
+const labelOf = (name) => COLOURS[name] ?? MAPS[name].label;
+
+/* Over R, G and B: the mean of means, and the root mean square of root mean squares. */
+const mean = ({ channels }, key) => sum(channels.map((c) => c[key])) / channels.length;
+const overall = ({ channels }, key) => Math.sqrt(sum(channels.map((c) => c[key] ** 2)) / channels.length);
+const isNoiseKnown = ({ channels }) => !channels.some((c) => c.zRms === null);
 
 /* The number that says most about a picture. */
 function numberOf(name, entry) {
-  const channels = entry.channels, mean = (key) => channels.reduce((sum, c) => sum + c[key], 0) / channels.length;
   switch (name) {
-    case "difference": return `mean ${format(mean("bias"), 3)}`;
+    case "difference": return `mean ${format(mean(entry, "bias"), 3)}`;
     case "relative": return `rms ${percent(overall(entry, "relativeRmse"))}`;
-    case "z": return channels.some((c) => c.zRms === null) ? "noise known in part" : `rms ${format(overall(entry, "zRms"), 3)} σ`;
+    case "z":
+      return isNoiseKnown(entry) ? `rms ${format(overall(entry, "zRms"), 3)} σ` : "noise known in part";
     case "flip": return `mean ${format(entry.flip?.mean, 3)}`;
     default: return (name === "reference" ? reference : entry).method ?? "";
   }
+}
+
+/* A number of a map, in what the map is measured in. */
+function inUnits(map, x, digits = 3) {
+  if (map.percent) return percent(x, digits);
+  return format(x, digits) + (map.unit ? " " + map.unit : "");
 }
 
 /* A scale that shows what is there: the floor of a packed map is what all but a few are below. */
@@ -33,10 +47,11 @@ function startScales() {
 /* What paper must say, where no control tells it. */
 function sayOnPaper() {
   const scales = Object.keys(shown().maps).map((name) => {
-    const map = MAPS[name], full = fullScale(name), unit = map.unit ? " " + map.unit : "";
-    return `${map.label} ${map.signed ? "±" : "0 to "}${map.percent ? percent(full) : format(full, 3) + unit}`;
+    const map = MAPS[name];
+    return `${map.label} ${map.signed ? "±" : "0 to "}${inUnits(map, fullScale(name))}`;
   });
-  $("paper").textContent = `Candidate: ${shown().name}. Exposure ${$("exposure-value").textContent}. Full scales: ${scales.join(", ")}.`;
+  $("paper").textContent = `Candidate: ${shown().name}. `
+    + `Exposure ${$("exposure-value").textContent}. Full scales: ${scales.join(", ")}.`;
 }
 
 /* ---- thumbnails ---- */
@@ -81,19 +96,37 @@ function drawLegend() {
     context.fillStyle = `rgb(${colourOf(map, map.signed ? 2 * t - 1 : t).join(" ")})`;
     context.fillRect(x, 0, 1, canvas.height);
   }
-  const full = fullScale(state.picture), unit = map.unit ? " " + map.unit : "";
-  const say = (x) => map.percent ? percent(x) : format(x, 3) + unit;
-  $("legend-ticks").replaceChildren(...(map.signed ? [-full, 0, full] : [0, full / 2, full]).map((x) => make("span", {}, say(x))));
+  const full = fullScale(state.picture), ticks = map.signed ? [-full, 0, full] : [0, full / 2, full];
+  $("legend-ticks").replaceChildren(...ticks.map((x) => make("span", {}, inUnits(map, x))));
   $("legend-about").textContent = map.about;
-  $("scale-value").textContent = (map.signed ? "±" : "") + say(full);
+  $("scale-value").textContent = (map.signed ? "±" : "") + inUnits(map, full);
   $("scale").value = Math.log2(full / map.scale);
 }
 
 /* A value of a map; what was rounded to 0 is said to be less than what would not have been. */
 function sayValue(map, picture, code) {
-  const value = code === 0 ? valueOf(picture, 1) / 2 : valueOf(picture, code);
-  const text = map.percent ? percent(value, 2) : format(value, 2) + (map.unit ? " " + map.unit : "");
-  return code === 0 ? "< " + text : text;
+  if (code === 0) return "< " + inUnits(map, valueOf(picture, 1) / 2, 2);
+  return inUnits(map, valueOf(picture, code), 2);
+}
+
+/* As many digits as the rounding leaves. */
+function digitsOf(picture) {
+  const rounding = roundingOf(picture);
+  return rounding < 0.002 ? 4 : rounding < 0.02 ? 3 : 2;
+}
+
+async function coloursAt(picture, at) {
+  const planes = await planesOf(picture), digits = digitsOf(picture);
+  return planes.map((plane) => format(valueOf(picture, plane[at]), digits));
+}
+
+async function mapValuesAt(maps, at) {
+  const values = [];
+  for (const [name, picture] of Object.entries(maps)) {
+    const [plane] = await planesOf(picture);
+    values.push([MAPS[name].label, sayValue(MAPS[name], picture, plane[at])]);
+  }
+  return values;
 }
 
 async function inspect(pixel) {
@@ -106,35 +139,40 @@ async function inspect(pixel) {
     return;
   }
   const at = pixel.y * WIDTH + pixel.x, entry = shown();
-  const colour = async (picture) => {
-    const planes = await planesOf(picture), digits = roundingOf(picture) < 0.002 ? 4 : roundingOf(picture) < 0.02 ? 3 : 2;
-    return planes.map((plane) => format(valueOf(picture, plane[at]), digits));
-  };
-  const rows = [["Reference", ...await colour(reference.colour)], ["Candidate", ...await colour(entry.colour)]];
-  const maps = [];
-  for (const name of Object.keys(entry.maps)) {
-    const picture = entry.maps[name], code = (await planesOf(picture))[0][at];
-    maps.push([MAPS[name].label, sayValue(MAPS[name], picture, code)]);
-  }
+  const before = await coloursAt(reference.colour, at), after = await coloursAt(entry.colour, at);
+  const maps = await mapValuesAt(entry.maps, at);
   if (state.pixel !== pixel) return;
   $("pixel").textContent = `Pixel (${pixel.x}, ${pixel.y})`;
   table.hidden = false;
-  table.tBodies[0].replaceChildren(...rows.map(([name, ...cells]) =>
-    make("tr", {}, make("th", { scope: "row" }, name), ...cells.map((cell) => make("td", {}, cell)))),
-    ...maps.map(([name, value]) => make("tr", {}, make("th", { scope: "row" }, name), make("td", { colSpan: 3 }, value))));
+  const row = (name, ...cells) => make("tr", {}, make("th", { scope: "row" }, name), ...cells);
+  table.tBodies[0].replaceChildren(
+    row("Reference", ...before.map((text) => make("td", {}, text))),
+    row("Candidate", ...after.map((text) => make("td", {}, text))),
+    ...maps.map(([name, text]) => row(name, make("td", { colSpan: 3 }, text))));
 }
 
 /* ---- changes of state: each makes good what depends on it ---- */
 
+function captionOf(name) {
+  return `${labelOf(name)} · ${(name === "reference" ? reference : shown()).name}`;
+}
+
+/* Of the radio buttons with this name, the one with this value is on. */
+function check(name, value) {
+  for (const radio of document.querySelectorAll(`input[name=${name}]`)) {
+    radio.checked = radio.value === String(value);
+  }
+}
+
 function describeStage() {
-  const name = shown().name;
-  $("caption-left").textContent = `Reference · ${reference.name}`;
-  $("caption-right").textContent = state.picture === "candidate" ? `Candidate · ${name}`
-    : state.picture === "reference" ? `Reference · ${reference.name}` : `${labelOf(state.picture)} · ${name}`;
-  for (const radio of document.querySelectorAll("input[name=picture]")) radio.checked = radio.value === state.picture;
-  for (const radio of document.querySelectorAll("input[name=mode]")) radio.checked = radio.value === state.mode;
-  for (const radio of document.querySelectorAll("input[name=candidate]")) radio.checked = +radio.value === state.candidate;
-  for (const row of document.querySelectorAll("#candidates tbody tr")) row.toggleAttribute("data-shown", +row.dataset.index === state.candidate);
+  $("caption-left").textContent = captionOf("reference");
+  $("caption-right").textContent = captionOf(state.picture);
+  check("picture", state.picture);
+  check("mode", state.mode);
+  check("candidate", state.candidate);
+  for (const row of document.querySelectorAll("#candidates tbody tr")) {
+    row.toggleAttribute("data-shown", +row.dataset.index === state.candidate);
+  }
 }
 
 function choosePicture(name) {
@@ -170,7 +208,8 @@ function chooseCandidate(index) {
 function setExposure(stops) {
   state.exposure = clamp(Math.round(4 * stops) / 4, -12, 12);
   $("exposure").value = state.exposure;
-  $("exposure-value").textContent = `${state.exposure > 0 ? "+" : ""}${state.exposure} stops`.replace("-", "−");
+  const sign = state.exposure > 0 ? "+" : "";
+  $("exposure-value").textContent = `${sign}${state.exposure} stops`.replace("-", "−");
   repaint();
   drawThumbnails();
 }
@@ -194,9 +233,9 @@ function setRecords(on) {
 function showPlace(spot) {
   state.marked = { width: 1, height: 1, ...spot };
   if (state.mode === "slider") chooseMode("sides");
-  const { width, height } = paneSize();
-  const scale = clamp(Math.min(width, height) / (6 * Math.max(state.marked.width, state.marked.height)), 1, 16);
-  lookAt(spot.x + (state.marked.width - 1) / 2, spot.y + (state.marked.height - 1) / 2, scale);
+  const pane = paneSize(), { x, y, width, height } = state.marked;
+  const scale = Math.min(pane.width, pane.height) / (6 * Math.max(width, height));
+  lookAt(x + (width - 1) / 2, y + (height - 1) / 2, clamp(scale, 1, 16));
   inspect({ x: clamp(spot.x, 0, WIDTH - 1), y: clamp(spot.y, 0, HEIGHT - 1) });
   $("viewer").scrollIntoView({ block: "start" });
   $("stage").focus({ preventScroll: true });
