@@ -64,6 +64,11 @@ ASSAY_API assay_status assay_verify_bundle(assay_context *context, const char *c
                                            const char *reference, const assay_scene *scene,
                                            assay_precision precision, assay_verdict *verdict);
 
+/* Adds a finding that cannot tell for each of the stages (names, with commas between them) of which
+ * the verdict has none yet: what was to be judged and was not does not pass.  Errors: ARGUMENT (no
+ * such stage), MEMORY. */
+ASSAY_API assay_status assay_verify_require(assay_verdict *verdict, const char *stages);
+
 #ifdef __cplusplus
 }
 #endif

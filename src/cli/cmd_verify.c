@@ -44,7 +44,8 @@ enum {
     OPT_QUIET,
     OPT_HELP,
     OPT_SCENE,
-    OPT_TIME
+    OPT_TIME,
+    OPT_REQUIRE
 };
 static const cli_option OPTIONS[] = {
     {"reference", 0, "REF",
@@ -73,6 +74,7 @@ static const cli_option OPTIONS[] = {
     {"help", 'h', NULL, "this text"},
     {"scene", 0, "F.gltf", "bundles: judges the stages that look at a scene, too"},
     {"time", 0, "T", "seconds into the scene's animations (default 0)"},
+    {"require", 0, "STAGE,...", "bundles: cannot tell where one of these is not judged"},
     CLI_SCENE_OPTIONS,
     {0}};
 
@@ -155,6 +157,7 @@ static const char *take_output(verify_request *r, int index, const char *value)
     case OPT_QUIET: r->quiet = true; return NULL;
     case OPT_HELP: r->help = true; return NULL;
     case OPT_SCENE: r->bundles.scene = value; return NULL;
+    case OPT_REQUIRE: r->bundles.require = value; return NULL;
     case OPT_TIME: return cli_read_real(value, &r->bundles.time);
     default: break;
     }

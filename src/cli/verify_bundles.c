@@ -12,7 +12,9 @@ bool cli_is_bundle(const char *path)
 const char *cli_bundle_check(const cli_bundle_request *request, int count, const char *candidate)
 {
     if (!cli_is_bundle(candidate)) {
-        return request->scene ? "--scene goes with bundles" : NULL;
+        return request->scene     ? "--scene goes with bundles"
+               : request->require ? "--require goes with bundles"
+                                  : NULL;
     }
     return count > 1 ? "one bundle at a time" : cli_scene_check(&request->options);
 }
@@ -31,6 +33,9 @@ assay_status cli_verify_bundle(assay_context *context, const char *candidate, co
     }
     status = status ? status
                     : assay_verify_bundle(context, candidate, reference, scene, precision, verdict);
+    if (status == ASSAY_OK && request->require) {
+        status = assay_verify_require(verdict, request->require);
+    }
     assay_scene_destroy(scene);
     if (status != ASSAY_OK) {
         assay_verdict_destroy(verdict);

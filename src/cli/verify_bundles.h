@@ -6,8 +6,9 @@
 #include "scene_options.h"
 
 typedef struct {
-    const char       *scene; /* NULL without */
-    double            time;  /* s            */
+    const char       *scene;   /* NULL without */
+    double            time;    /* s            */
+    const char       *require; /* names of stages, with commas between them; NULL */
     cli_scene_request options;
 } cli_bundle_request;
 

@@ -8,18 +8,6 @@
 #include "io/bundle.h"
 #include "oracle/stage.h"
 
-static assay_status fail_stage(assay_context *context, const char *name)
-{
-    char   known[256] = "";
-    size_t used       = 0;
-    for (int i = 0; i < assay_stage_count() && used < sizeof known; i++) {
-        used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "",
-                                 assay_stage_at(i).name);
-    }
-    return assay_fail(context, ASSAY_ERR_ARGUMENT, "unknown stage '%.64s'; there are: %s", name,
-                      known);
-}
-
 /* What is written for every bundle, and what this stage says itself. */
 static bool is_own_key(const char *key)
 {
@@ -99,7 +87,7 @@ assay_status assay_replay(assay_context *context, const assay_replay_options *op
 {
     const oracle_stage *stage = assay_stage_find(options->stage);
     if (!stage) {
-        return fail_stage(context, options->stage);
+        return stage_fail_unknown(context, options->stage);
     }
     assay_bundle_reader *in     = NULL;
     assay_bundle        *out    = NULL;

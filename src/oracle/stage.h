@@ -57,6 +57,8 @@ typedef struct oracle_stage {
 extern const oracle_stage *const assay_stages[];
 /* NULL where there is none of that name. */
 const oracle_stage *assay_stage_find(const char *name);
+/* ARGUMENT, in words: which stages there are. */
+assay_status stage_fail_unknown(assay_context *context, const char *name);
 
 /* Makes an output (zeros) of the stage's description `index`; number: for names with a '#'.
  * Errors: MEMORY, LIMIT. */

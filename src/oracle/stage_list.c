@@ -1,6 +1,7 @@
 /* stage_list.c - the stages: one line each, in the order of the data's way. */
 #include "oracle/stage_list.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "core/context.h"
@@ -32,6 +33,18 @@ const oracle_stage *assay_stage_find(const char *name)
         }
     }
     return NULL;
+}
+
+assay_status stage_fail_unknown(assay_context *context, const char *name)
+{
+    char   known[256] = "";
+    size_t used       = 0;
+    for (int i = 0; i < assay_stage_count() && used < sizeof known; i++) {
+        used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "",
+                                 assay_stage_at(i).name);
+    }
+    return assay_fail(context, ASSAY_ERR_ARGUMENT, "unknown stage '%.64s'; there are: %s", name,
+                      known);
 }
 
 int assay_stage_count(void) { return (int)(sizeof assay_stages / sizeof assay_stages[0]) - 1; }

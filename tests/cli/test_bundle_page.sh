@@ -1,5 +1,7 @@
 #!/bin/sh
+# shellcheck disable=SC2086
 # The programs of docs/bundle.md, taken out of the page, write what `assay verify` understands: right
+# shellcheck disable=SC2086
 # it passes, spoiled it does not.  TAP.
 . tests/support/tap.sh
 
@@ -27,6 +29,14 @@ ${CC:-cc} -std=c11 -D_GNU_SOURCE -Wall -Wextra -Werror -o "$folder/normalise" "$
     "$folder/normalise" "$folder/dump" "$folder/by-c"
 result $? "C: the page's program builds and runs"
 judges "C: what it wrote passes" 0 "$folder/by-c" float
+judged="--reference $folder/dump --require normalise"
+run verify "$folder/by-c" $judged,weights
+[ "$code" -eq 2 ] && grep -q 'weights, test required' "$folder/stdout"
+result $? "a stage that is required and not there cannot be told"
+refuses "a stage that is none" 2 "unknown stage 'shine'" verify "$folder/by-c" $judged,shine
+run verify "$folder/by-c" --reference "$folder/dump" --require normalise
+went_well
+result $? "one that is there is judged as ever"
 sed 's/sum.values\[i\] \/ w : 0/sum.values[i] : 0/' "$folder/normalise.c" > "$folder/wrong.c"
 ${CC:-cc} -std=c11 -D_GNU_SOURCE -o "$folder/wrong" "$folder/wrong.c" &&
     "$folder/wrong" "$folder/dump" "$folder/wrong-c"
