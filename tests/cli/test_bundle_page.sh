@@ -1,7 +1,6 @@
 #!/bin/sh
 # shellcheck disable=SC2086
 # The programs of docs/bundle.md, taken out of the page, write what `assay verify` understands: right
-# shellcheck disable=SC2086
 # it passes, spoiled it does not.  TAP.
 . tests/support/tap.sh
 
