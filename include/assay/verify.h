@@ -33,7 +33,7 @@ typedef struct {
                                     whole, passes                                                 */
     double allow_absolute;       /* in the channel's unit, beside or instead; NaN          */
     double detect;               /* cannot tell unless a bias of the whole image of this
-                                    share of its mean would have been seen; NaN            */
+                                    share of its mean would have been seen; NaN: all of it */
     double          detect_tile; /* likewise of every tile, in parts of the image's mean   */
     uint32_t        candidate_samples; /* of a pixel, where SampleCount does not say; 0: unknown */
     uint32_t        reference_samples;

@@ -66,6 +66,15 @@ static void ask_detection(assay_finding *f, double asked, double could, double u
     }
 }
 
+/* Nobody asked, but a test that would let a black image pass is none. */
+static void ask_black(assay_finding *f)
+{
+    if (f->kind == ASSAY_VERDICT_PASS && !(f->visible <= fabs(f->reference))) {
+        f->kind    = ASSAY_VERDICT_CANNOT_TELL;
+        f->meaning = "Too much noise: a black image, or one twice as bright, would have passed.";
+    }
+}
+
 assay_status assay_judge_add_problem(const assay_verify_channel *channel, assay_verdict *verdict)
 {
     assay_finding finding = start(channel, channel->problem_test);
@@ -92,6 +101,7 @@ assay_status assay_judge_add_whole(assay_judgement *j, int channel, assay_verdic
         finding.meaning = assay_meaning_of_whole(j, channel);
     }
     ask_detection(&finding, j->options->detect, finding.visible, finding.reference);
+    ask_black(&finding);
     return assay_verdict_add(verdict, &finding);
 }
 

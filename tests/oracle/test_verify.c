@@ -175,6 +175,23 @@ static void detection_that_was_asked(void **state)
     assay_image_destroy(r);
 }
 
+/* visible, as above: 0.0074 sigma of the mean */
+static void black_would_have_passed(void **state)
+{
+    static const struct {
+        double             sigma;
+        assay_verdict_kind kind;
+    } CASES[] = {{100.0, ASSAY_VERDICT_PASS}, {200.0, ASSAY_VERDICT_CANNOT_TELL}};
+    for (int i = 0; i < 2; i++) {
+        assay_image *c               = normal_images_make(*state, 9, CASES[i].sigma, 64),
+                    *r               = normal_images_make(*state, 10, CASES[i].sigma, 256);
+        const assay_verify_options o = assay_verify_options_default();
+        assert_int_equal(normal_images_kind(*state, c, r, &o), CASES[i].kind);
+        assay_image_destroy(c);
+        assay_image_destroy(r);
+    }
+}
+
 /* ---- a candidate alone ---- */
 
 static assay_image *alone(assay_context *context, uint64_t seed, double sigma)
@@ -466,6 +483,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(rare_light_missed, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(one_pixel, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(firefly_is_told, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(black_would_have_passed, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(detection_that_was_asked, counted_set_up,
                                         counted_tear_down),
         cmocka_unit_test_setup_teardown(alone_without_variance, counted_set_up, counted_tear_down),
