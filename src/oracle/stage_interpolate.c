@@ -7,9 +7,8 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/parallel.h"
-#include "oracle/mean_bound.h"
+#include "oracle/record_parts.h"
 #include "oracle/stage_list.h"
-#include "oracle/stage_records.h"
 
 enum { QUERY_POSITION = RECORDS_INPUTS, QUERY_NORMAL, CHUNK = 64 };
 enum { OUT_IRRADIANCE, OUT_WEIGHT, OUT_COUNT };
@@ -34,9 +33,7 @@ static const assay_stage_array OUTPUTS[] = {
 typedef struct {
     assay_contributions found;
     assay_octree_walk  *walk;
-    stage_candidates    near;
-    mean_part          *parts;
-    size_t              capacity;
+    record_parts        parts;
 } desk;
 
 typedef struct {
@@ -50,57 +47,24 @@ typedef struct {
 
 /* ---- bounds ---- */
 
-/* What the records near the point may weigh and say; the sum's bound in *sum. */
-static assay_status collect(const job_data *job, desk *own, assay_vec3 p, assay_vec3 n,
-                            size_t *count_out, tracked_sum *weights)
-{
-    const stage_records *records = job->records;
-    const rounding      *r       = &job->run->rounding;
-    void                *grown   = own->parts;
-    size_t               count   = 0;
-    assay_status         status  = stage_records_near(records, own->walk, p, &own->near);
-    status                       = status ? status
-                                          : assay_grow(records->context, &grown, &own->capacity, own->near.count + 1,
-                                                       sizeof *own->parts);
-    if (status != ASSAY_OK) {
-        return ASSAY_ERR_MEMORY;
-    }
-    own->parts = grown;
-    for (size_t i = 0; i < own->near.count; i++) {
-        const assay_record *record = &records->records[own->near.items[i]];
-        const weight_bound  w =
-            record_weight_bound(r, records->exact, record, &records->rules, p, n);
-        if (w.member != BOUND_OUT) {
-            mean_part   *part   = &own->parts[count++];
-            const bool   sure   = w.member == BOUND_IN;
-            const double counts = assay_record_weight(record, &records->rules, p, n);
-            part->low           = sure ? w.low : 0.0;
-            part->high          = w.high;
-            record_said_bound(r, records->exact, record, &records->rules, p, n, part->said);
-            tracked_sum_add(weights, (tracked){counts, fmax(w.high - counts, counts - part->low)});
-        }
-    }
-    *count_out = count;
-    return ASSAY_OK;
-}
-
 static assay_status bound_point(const job_data *job, desk *own, size_t i, assay_vec3 p,
                                 assay_vec3 n)
 {
     const rounding *r       = &job->run->rounding;
     tracked_sum     weights = {0};
-    size_t          count   = 0;
-    if (collect(job, own, p, n, &count, &weights) != ASSAY_OK) {
+    if (record_parts_collect(job->records, r, own->walk, UINT32_MAX, p, n, &weights, &own->parts) !=
+        ASSAY_OK) {
         return ASSAY_ERR_MEMORY;
     }
+    const size_t count              = own->parts.count;
     job->out[OUT_WEIGHT]->bounds[i] = tracked_sum_of(r, &weights).e;
     double surest                   = 0.0;
     for (size_t k = 0; k < count; k++) {
-        surest += own->parts[k].low;
+        surest += own->parts.items[k].low;
     }
     for (int c = 0; c < 3; c++) {
         const double value = job->out[OUT_IRRADIANCE]->values[3 * i + (size_t)c];
-        double       bound = count ? mean_bound(r, own->parts, count, c, value) : 0.0;
+        double       bound = count ? mean_bound(r, own->parts.items, count, c, value) : 0.0;
         if (count && !(surest > 0.0)) {
             bound = fmax(bound, fabs(value)); /* there may be none that counts */
         }
@@ -164,8 +128,7 @@ static void close_job(const stage_run *run, job_data *job, assay_vec3 *normals)
     for (int i = 0; i < threads; i++) {
         assay_contributions_release(&job->desks[i].found);
         assay_release(run->context, job->desks[i].walk);
-        assay_release(run->context, job->desks[i].near.items);
-        assay_release(run->context, job->desks[i].parts);
+        record_parts_release(run->context, &job->desks[i].parts);
     }
     assay_release(run->context, job->desks);
     assay_record_store_destroy(job->store);

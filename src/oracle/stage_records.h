@@ -63,6 +63,13 @@ enum {
     {"clamp_negative", ASSAY_PARAM_BOOL, "", "on", 0, 0, NULL,                                     \
      "What is extrapolated below 0 counts as 0.",                                                  \
      "ours"}
+/* Of the stages that splat: what a pixel shows. */
+#define STAGE_PIXEL_ARRAYS \
+    {"splat/position", "m", "X Y Z", "pixel", "its point; NaN where there is none", \
+     false, true, false}, \
+    {"splat/frame", "", "Xx Xy Xz Yx Yy Yz Zx Zy Zz", "pixel", \
+     "frame whose z is the normal on the viewer's side", false, true, false}, \
+    {"splat/albedo", "", "R G B", "pixel", "of the Lambertian part", false, false, false}
 /* clang-format on */
 
 typedef struct {

@@ -32,11 +32,7 @@ static const assay_param_desc PARAMS[] = {
 
 static const assay_stage_array INPUTS[] = {
     STAGE_RECORD_ARRAYS,
-    {"splat/position", "m", "X Y Z", "pixel", "its point; NaN where there is none",
-     false, true, false},
-    {"splat/frame", "", "Xx Xy Xz Yx Yy Yz Zx Zy Zz", "pixel",
-     "frame whose z is the normal on the viewer's side", false, true, false},
-    {"splat/albedo", "", "R G B", "pixel", "of the Lambertian part", false, false, false},
+    STAGE_PIXEL_ARRAYS,
     {"splat/batch_end", "records", "K", "batch",
      "how many records it has; without it one batch has all", true, false, false},
     {0}};

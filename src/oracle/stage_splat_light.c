@@ -11,9 +11,8 @@
 #include "core/context.h"
 #include "core/parallel.h"
 #include "methods/cached_image.h"
-#include "oracle/mean_bound.h"
+#include "oracle/record_parts.h"
 #include "oracle/stage_list.h"
-#include "oracle/stage_records.h"
 
 enum {
     SPLAT_POSITION = RECORDS_INPUTS,
@@ -35,11 +34,7 @@ static const assay_param_desc PARAMS[] = {
 
 static const assay_stage_array INPUTS[] = {
     STAGE_RECORD_ARRAYS,
-    {"splat/position", "m", "X Y Z", "pixel", "its point; NaN where there is none",
-     false, true, false},
-    {"splat/frame", "", "Xx Xy Xz Yx Yy Yz Zx Zy Zz", "pixel",
-     "frame whose z is the normal on the viewer's side", false, true, false},
-    {"splat/albedo", "", "R G B", "pixel", "of the Lambertian part", false, false, false},
+    STAGE_PIXEL_ARRAYS,
     {"splat/batch.#/weight", "", "W", "pixel", "sum of weights, of the last batch",
      false, false, false},
     {"splat/batch_end", "records", "K", "batch",
@@ -55,9 +50,7 @@ static const assay_stage_array OUTPUTS[] = {
 /* A worker's own. */
 typedef struct {
     assay_contributions found;
-    stage_candidates    near;
-    mean_part          *parts;
-    size_t              capacity;
+    record_parts        parts;
 } desk;
 
 typedef struct {
@@ -70,47 +63,17 @@ typedef struct {
     assay_octree_walk  *walks;
 } light_job;
 
-static assay_status collect(const light_job *job, int worker, assay_vec3 p, assay_vec3 n,
-                            size_t *count_out)
-{
-    const stage_records *records = job->records;
-    const rounding      *r       = &job->run->rounding;
-    desk                *own     = &job->desks[worker];
-    void                *grown   = own->parts;
-    assay_status         status  = stage_records_near(records, &job->walks[worker], p, &own->near);
-    status                       = status ? status
-                                          : assay_grow(records->context, &grown, &own->capacity, own->near.count + 1,
-                                                       sizeof *own->parts);
-    if (status != ASSAY_OK) {
-        return ASSAY_ERR_MEMORY;
-    }
-    own->parts   = grown;
-    size_t count = 0;
-    for (size_t i = 0; i < own->near.count && own->near.items[i] < job->end; i++) {
-        const assay_record *record = &records->records[own->near.items[i]];
-        const weight_bound  w =
-            record_weight_bound(r, records->exact, record, &records->rules, p, n);
-        if (w.member != BOUND_OUT) {
-            mean_part *part = &own->parts[count++];
-            part->low       = w.member == BOUND_IN ? w.low : 0.0;
-            part->high      = w.high;
-            record_said_bound(r, records->exact, record, &records->rules, p, n, part->said);
-        }
-    }
-    *count_out = count;
-    return ASSAY_OK;
-}
-
 /* weight, mean, albedo and 1 / pi multiplied in any order. */
 static assay_status bound_pixel(const light_job *job, int worker, size_t pixel, assay_vec3 p,
                                 assay_vec3 n, const double mean[3])
 {
-    const rounding    *r      = &job->run->rounding;
-    size_t             count  = 0;
-    const assay_status status = collect(job, worker, p, n, &count);
+    const rounding    *r     = &job->run->rounding;
+    record_parts      *parts = &job->desks[worker].parts;
+    const assay_status status =
+        record_parts_collect(job->records, r, &job->walks[worker], job->end, p, n, NULL, parts);
     for (size_t c = 0; c < 3 && status == ASSAY_OK; c++) {
         const double bound =
-            count ? mean_bound(r, job->desks[worker].parts, count, (int)c, mean[c]) : 0.0;
+            parts->count ? mean_bound(r, parts->items, parts->count, (int)c, mean[c]) : 0.0;
         const tracked weight = tracked_given(r, job->run->in[SPLAT_WEIGHT].values[pixel]);
         const tracked albedo = tracked_given(r, job->run->in[SPLAT_ALBEDO].values[3 * pixel + c]);
         const tracked share  = tracked_mul(r, albedo, tracked_constant(r, ASSAY_INV_PI));
@@ -207,8 +170,7 @@ static void close_job(light_job *job)
     assay_context *context = job->run->context;
     for (int i = 0; job->desks && i < assay_context_threads(context); i++) {
         assay_contributions_release(&job->desks[i].found);
-        assay_release(context, job->desks[i].near.items);
-        assay_release(context, job->desks[i].parts);
+        record_parts_release(context, &job->desks[i].parts);
     }
     assay_release(context, job->desks);
     assay_release(context, job->walks);
