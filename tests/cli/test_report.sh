@@ -68,7 +68,8 @@ clear_out
 # ---- what is written ----
 cat > "$work/verdict.json" <<'VERDICT'
 {"format":"assay-verdict","version":1,"tool":"x","candidate":"c","reference":"r","verdict":"fail",
- "exit_code":1,"first":1,"summary":"</script><script>hacked=1</script>","settings":{},"findings":[
+ "exit_code":1,"first":1,"summary":"</script><script>hacked=1</script>","settings":{
+ "shared_seed":"yes: as it is","not judged":"a/b, <img src=x onerror=hacked=1>","missing":"e/f"},"findings":[
  {"stage":"gbuffer","array":"P","channel":null,"test":"rounding","verdict":"pass","values":9,
   "place":{"row":1,"column":2},"candidate":1,"reference":1,"candidate_hex":null,"reference_hex":null,
   "effect":null,"bound":1,"in_bounds":0.5,"ulps":1,"p":null,"log_p":null,"visible":null,"meaning":null},
@@ -81,7 +82,8 @@ accepts "a folder: the path with the most samples is the reference" \
     report "$work/dir" -o "$work/all.html" -q --title '</title><script>hacked=1</script>"&'
 accepts "a bundle against an image, with a verdict" report "$work/dir/cache" --reference "$truth" \
     --verdict "$work/verdict.json" -o "$work/pair.html" -q
-sed 's/"fail"/"pass"/g; s/"first":1/"first":null/' "$work/verdict.json" > "$work/pass.json"
+sed 's/"fail"/"pass"/g; s/"first":1/"first":null/
+     s/"candidate":"c","reference":"r"/"candidate":"elsewhere\/cache","reference":"truth.exr"/' "$work/verdict.json" > "$work/pass.json"
 accepts "a verdict that passes" report "$work/dir/cache" --reference "$truth" --verdict "$work/pass.json" \
     -o "$work/pass.html" -q
 accepts "an image against itself" report "$truth" --reference "$truth" -o "$work/same.html" -q
@@ -117,7 +119,8 @@ browse() { # EXPECTED: pages
     { echo '<!DOCTYPE html><meta charset="utf-8">'
       echo '<style>iframe { position: absolute; left: 0; top: 0 }</style><body>'
       for page in "$folder"/pages/*.html; do
-          echo "<iframe src=\"pages/${page##*/}\" width=\"1200\" height=\"900\"></iframe>"
+          case $page in *phone.html) width=375 ;; *) width=1200 ;; esac
+          echo "<iframe src=\"pages/${page##*/}\" width=\"$width\" height=\"900\"></iframe>"
       done; } > "$folder/frames.html"
     : > "$folder/console"
     timeout -k 5 150 chromium --headless --no-sandbox --disable-gpu --no-first-run --enable-logging=stderr \
@@ -134,11 +137,12 @@ browse() { # EXPECTED: pages
 }
 
 mkdir "$folder/pages"
-for page in all pair pass same; do
+cp "$work/pair.html" "$work/phone.html"
+for page in all pair pass same phone; do
     inject "$work/$page.html" "$folder/pages/$page.html" -e ''
 done
-browse 4
-for page in all pair pass; do
+browse 5
+for page in all pair pass phone; do
     grep -q "SELFTEST $page.html passes" "$folder/console"
     code=$?
     [ $code -eq 0 ] || grep "SELFTEST $page.html" "$folder/console" | sed 's/^/# /'
@@ -157,9 +161,9 @@ mkdir "$folder/pages"
 count=0
 while IFS='|' read -r page change; do
     count=$((count + 1))
-    inject "$work/$page.html" "$folder/pages/$count.html" -e "$change"
+    inject "$work/$page.html" "$folder/pages/$count.$page.html" -e "$change"
     inject "$work/$page.html" "$folder/unchanged.html" -e ''
-    ! cmp -s "$folder/unchanged.html" "$folder/pages/$count.html"
+    ! cmp -s "$folder/unchanged.html" "$folder/pages/$count.$page.html"
     result $? "mutant $count changes the page: $change"
     echo "$change" > "$folder/change.$count"
 done <<'TABLE'
@@ -177,13 +181,19 @@ pair|s/^    if (state.records) drawRecords.*//
 all|s/chooseCandidate(state.candidate + 1)/0/
 pair|s/href: `#finding-\${verdict.first}`/href: "#finding-0"/
 pair|s/^  \$("scale-value").textContent/  throw 1; &/
+phone|s/^  #stage { width: 100%;/  #stage {/
+pair|s/^    settings?.missing && .*//
+pair|s/^ *settings?.*not judged.*//
+pair|s/^    settings?.shared_seed && .*//
+pair|s/^    !isThis && .*//
+pass|s/^    !isThis && /    /
 pass|s/: null\].filter(Boolean));/: null]);/
 all|s/^  drawConvergence();$//
 all|s/<body>/<body><img src="https:\/\/example.org\/x.png" alt="">/
 TABLE
 browse $count
 for number_of in $(seq $count); do
-    grep 'CONSOLE' "$folder/console" | grep -q "SELFTEST $number_of.html fails"
+    grep 'CONSOLE' "$folder/console" | grep -q "SELFTEST $number_of\.[a-z]*\.html fails"
     seen=$?
     # What asks for something outside is stopped by the page's policy, which says so.
     if [ $seen -ne 0 ] && grep -q example.org "$folder/change.$number_of"; then

@@ -49,6 +49,8 @@
     check(globalThis.hacked === undefined, "no text was run");
     const ids = all("[id]").map((element) => element.id);
     check(new Set(ids).size === ids.length, "every id is there once");
+    const root = document.documentElement;
+    check(root.scrollWidth <= root.clientWidth, "the page is no wider than its window");
     check(performance.getEntriesByType("resource").length === 0, "nothing was asked for");
   }
 
@@ -226,6 +228,14 @@
     const link = document.querySelector("#verdict a");
     const isFirst = (id) => document.querySelector(id)?.hasAttribute("data-first");
     check(!link || isFirst(link.getAttribute("href")), "the link goes to the first failure");
+    const verdictOf = JSON.parse(document.querySelector("script.candidate").textContent).verdict;
+    const said = all("#verdict .caveat").map((line) => line.textContent).join(" ");
+    const { missing, "not judged": unjudged, shared_seed: seed } = verdictOf.settings;
+    check(!missing || said.includes(`reference's arrays: ${missing}.`), "what is missing is said");
+    check(!unjudged || said.includes(`Not judged: ${unjudged}.`), "what was not judged is said");
+    check(!seed || said.includes("The same seed"), "a shared seed is said");
+    check(said.includes("the verdict is of ") === (verdictOf.candidate === "c"),
+      "whose verdict it is is said where it is another's");
     check(all("#findings tbody tr[id]").length > 0, "the stages are listed");
   }
 

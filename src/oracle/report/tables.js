@@ -27,7 +27,24 @@ function buildVerdict() {
   section.replaceChildren(...[
     make("h2", { id: "verdict-heading" }, pill(verdict.verdict), " ", shown().name),
     make("p", {}, verdict.summary ?? ""),
+    ...caveatsOf(verdict).map((text) => make("p", { className: "caveat" }, text)),
     first ? linksTo(verdict, first) : null].filter(Boolean));
+}
+
+/* What the page calls the image of this path by; several runs go by the first. */
+const nameIn = (path) => String(path).replace(/ and \d+ more$/, "").replace(/\/+$/, "")
+  .replace(/^.*\//, "").replace(/\.(exr|hdr)$/, "");
+
+/* What the word above does not say: whose verdict it is, and what it did not look at. */
+function caveatsOf({ candidate, reference: truth = "its own inputs", settings }) {
+  const isTruth = truth === "its own inputs" || nameIn(truth) === reference.name;
+  const isThis = isTruth && nameIn(candidate) === shown().name;
+  return [
+    !isThis && `Here are ${shown().name} and ${reference.name}; the verdict is of ${candidate} against ${truth}.`,
+    settings?.shared_seed && `The same seed in both: ${String(settings.shared_seed).replace(/^yes: /, "")}.`,
+    settings?.["not judged"] && `Not judged: ${settings["not judged"]}.`,
+    settings?.missing && `Missing, of the reference's arrays: ${settings.missing}.`,
+  ].filter(Boolean);
 }
 
 /* To the first finding that fails, in its table and in the picture. */
