@@ -205,6 +205,19 @@ static const char *check_bundle_options(const assay_verify_options *o)
                : NULL;
 }
 
+/* Each format is whole only where nothing else is written to the same place. */
+static const char *check_outputs(const verify_request *r)
+{
+    const bool json = r->json && strcmp(r->json, "-") == 0;
+    const bool xml  = r->junit && strcmp(r->junit, "-") == 0;
+    if (r->json && r->junit && strcmp(r->json, r->junit) == 0) {
+        return "--json and --junit are the same file";
+    }
+    return (json || xml) && (r->list || r->annotations)
+               ? "--list and --annotations write to standard output, as - does"
+               : NULL;
+}
+
 /* What the options say together; NULL, or what is wrong. */
 static const char *check_together(const verify_request *r)
 {
@@ -221,6 +234,9 @@ static const char *check_together(const verify_request *r)
     const char *problem = bundle ? check_bundle_options(&r->options) : NULL;
     problem = problem ? problem : cli_bundle_check(&r->bundles, r->count, r->candidates[0]);
     if (problem) {
+        return problem;
+    }
+    if ((problem = check_outputs(r)) != NULL) {
         return problem;
     }
     const bool allow = r->options.allow > 0.0 || r->options.allow_absolute > 0.0;
@@ -272,10 +288,15 @@ static void print_findings(const assay_verdict *verdict)
     }
 }
 
-static void print_unseen(const assay_verdict *verdict)
+/* What the paragraph does not say. */
+static void print_caveats(const assay_verdict *verdict)
 {
+    const char *seed     = assay_verdict_get(verdict, "shared_seed");
     const char *unjudged = assay_verdict_get(verdict, "not judged");
     const char *missing  = assay_verdict_get(verdict, "missing");
+    if (seed) {
+        printf("The same seed in both: %s.\n", seed);
+    }
     if (unjudged) {
         printf("Not judged: %s.\n", unjudged);
     }
@@ -297,7 +318,7 @@ static assay_status report(cli_console *console, assay_context *context, const v
         status = write_output(console, context, verdict, assay_verdict_paragraph, "-");
     }
     if (status == ASSAY_OK && text) {
-        print_unseen(verdict);
+        print_caveats(verdict);
     }
     if (status == ASSAY_OK && r->annotations) {
         status = write_output(console, context, verdict, assay_verdict_annotations, "-");

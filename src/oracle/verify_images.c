@@ -199,7 +199,7 @@ static assay_status describe(assay_verdict *verdict, int first, const assay_veri
     if (status == ASSAY_OK && shared) {
         status = assay_verdict_set(
             verdict, "shared_seed",
-            "yes: the same random numbers in both make differences look smaller than they are");
+            "the same random numbers in both make differences look smaller than they are");
     }
     return status ? status : describe_power(verdict, first, o->tile);
 }

@@ -69,7 +69,7 @@ clear_out
 cat > "$work/verdict.json" <<'VERDICT'
 {"format":"assay-verdict","version":1,"tool":"x","candidate":"c","reference":"r","verdict":"fail",
  "exit_code":1,"first":1,"summary":"</script><script>hacked=1</script>","settings":{
- "shared_seed":"yes: as it is","not judged":"a/b, <img src=x onerror=hacked=1>","missing":"e/f"},"findings":[
+ "shared_seed":"as it is","not judged":"a/b, <img src=x onerror=hacked=1>","missing":"e/f"},"findings":[
  {"stage":"gbuffer","array":"P","channel":null,"test":"rounding","verdict":"pass","values":9,
   "place":{"row":1,"column":2},"candidate":1,"reference":1,"candidate_hex":null,"reference_hex":null,
   "effect":null,"bound":1,"in_bounds":0.5,"ulps":1,"p":null,"log_p":null,"visible":null,"meaning":null},

@@ -45,6 +45,10 @@ ends "an allowance that is large" 0 "every region is within the allowance in" \
     verify "$folder/dark.exr" $truth --ignore-metadata --allow-absolute 100
 ends "a channel that is missing" 2 "does not have this channel" \
     verify "$folder/same.exr" $truth --channels R,Direct.R
+ends "a seed that both have" 0 "The same seed in both: " \
+    verify "$folder/truth.exr" $truth
+! "$assay" verify "$folder/same.exr" $truth | grep -q "seed"
+result $? "other seeds are not spoken of"
 ends "the list" 0 "tile-16" verify "$folder/same.exr" $truth --list
 ends "annotations" 1 "::error file=" verify "$folder/dark.exr" $truth --ignore-metadata -q \
     --annotations
@@ -91,6 +95,13 @@ refuses "a run twice" 2 "runs 1 and 2" verify "$folder/same.exr" "$folder/same.e
 refuses "a channel twice" 2 "R is named twice" verify "$folder/same.exr" $truth --channels R,R
 refuses "an output in a folder that is not there" 3 "nowhere" verify "$folder/same.exr" $truth -q \
     --json "$folder/nowhere/v.json"
+refuses "two outputs in one file" 2 "the same file" verify "$folder/same.exr" $truth \
+    --json "$out/v" --junit "$out/v"
+for option in "--json - --list" "--junit - --list" "--json - --annotations"; do
+    refuses "$option" 2 "standard output" verify "$folder/same.exr" $truth $option
+done
+refuses "two outputs on standard output" 2 "the same file" verify "$folder/same.exr" $truth \
+    --json - --junit -
 refuses "an output over the reference" 2 "truth.exr" verify "$folder/same.exr" $truth \
     --json "$folder/truth.exr"
 finish

@@ -233,7 +233,7 @@
     const { missing, "not judged": unjudged, shared_seed: seed } = verdictOf.settings;
     check(!missing || said.includes(`reference's arrays: ${missing}.`), "what is missing is said");
     check(!unjudged || said.includes(`Not judged: ${unjudged}.`), "what was not judged is said");
-    check(!seed || said.includes("The same seed"), "a shared seed is said");
+    check(!seed || said.includes(`The same seed in both: ${seed}.`), "a shared seed is said");
     check(said.includes("the verdict is of ") === (verdictOf.candidate === "c"),
       "whose verdict it is is said where it is another's");
     check(all("#findings tbody tr[id]").length > 0, "the stages are listed");

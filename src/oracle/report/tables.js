@@ -41,7 +41,7 @@ function caveatsOf({ candidate, reference: truth = "its own inputs", settings })
   const isThis = isTruth && nameIn(candidate) === shown().name;
   return [
     !isThis && `Here are ${shown().name} and ${reference.name}; the verdict is of ${candidate} against ${truth}.`,
-    settings?.shared_seed && `The same seed in both: ${String(settings.shared_seed).replace(/^yes: /, "")}.`,
+    settings?.shared_seed && `The same seed in both: ${settings.shared_seed}.`,
     settings?.["not judged"] && `Not judged: ${settings["not judged"]}.`,
     settings?.missing && `Missing, of the reference's arrays: ${settings.missing}.`,
   ].filter(Boolean);
