@@ -26,6 +26,21 @@ double assay_noise_variance(const assay_noise *noise)
     return largest;
 }
 
+/* The least log p that so few samples can have: of all ways to share them out between the images at
+ * most two are as far apart as those that are alike in each image, whatever the distribution.
+ * Stops where it is below what was asked for.  (A path tracer's edge of a light is of that kind:
+ * all samples of one image hit it, all of the other miss it, and neither has a variance.) */
+static double least_log_p(const assay_noise *noise, double asked)
+{
+    const double few   = fmin(noise->candidate_samples, noise->reference_samples);
+    const double many  = fmax(noise->candidate_samples, noise->reference_samples);
+    double       least = assay_log(2.0);
+    for (double k = 1.0; k <= few && least >= asked; k += 1.0) {
+        least -= assay_log((many + k) / k);
+    }
+    return few > 0.0 ? fmin(least, 0.0) : -INFINITY;
+}
+
 double assay_noise_log_p(const assay_noise *noise, double size)
 {
     if (!(size > 0.0)) {
@@ -36,7 +51,7 @@ double assay_noise_log_p(const assay_noise *noise, double size)
         const assay_noise_view *v = &noise->views[i];
         log_p = fmax(log_p, assay_student_log_p(size / sqrt(v->variance), v->degrees));
     }
-    return log_p;
+    return fmax(log_p, least_log_p(noise, log_p));
 }
 
 /* Half of a two-sided p, or all but half. */
@@ -59,7 +74,7 @@ double assay_noise_log_p_one_sided(const assay_noise *noise, double size)
 double assay_noise_bound(const assay_noise *noise, assay_critical_values *critical,
                          assay_critical_values *power)
 {
-    double bound = 0.0;
+    double bound = least_log_p(noise, critical->log_p) > critical->log_p ? INFINITY : 0.0;
     for (int i = 0; i < noise->count; i++) {
         const assay_noise_view *v = &noise->views[i];
         double                  t = assay_critical_value(critical, v->degrees);

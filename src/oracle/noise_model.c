@@ -263,5 +263,9 @@ assay_noise assay_noise_of_pixel(const assay_noise_model *model, const assay_noi
     assay_noise_add(&noise, s.candidate_variance + local->reference, ASSAY_NORMAL);
     assay_noise_add(&noise, s.by_reference_light, ASSAY_NORMAL);
     assay_noise_add(&noise, s.by_candidate_light, ASSAY_NORMAL);
+    if (pair->candidate.variance && pair->reference.variance) {
+        noise.candidate_samples = fmax(s.candidate_samples, 2.0);
+        noise.reference_samples = fmax(s.reference_samples, 2.0);
+    }
     return noise;
 }

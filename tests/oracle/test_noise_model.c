@@ -182,6 +182,25 @@ static void probabilities(void **state)
     (void)state;
 }
 
+/* Of 2 and 2 samples there are 6 ways, of 3 and 5 there are 56; two are as far apart as it gets. */
+static void few_samples(void **state)
+{
+    assay_critical_values critical = assay_critical_values_exact(-9.0);
+    assay_noise           noise    = {.candidate_samples = 2, .reference_samples = 2};
+    assert_true(fabs(assay_exp(assay_noise_log_p(&noise, 1.0)) - 1.0 / 3) < 1e-12);
+    assert_true(isinf(assay_noise_bound(&noise, &critical, NULL)));
+    noise.candidate_samples = 3;
+    noise.reference_samples = 5;
+    assert_true(fabs(assay_exp(assay_noise_log_p(&noise, 1.0)) - 2.0 / 56) < 1e-12);
+    noise.candidate_samples = 64;
+    noise.reference_samples = 64;
+    assert_true(assay_noise_log_p(&noise, 1.0) < -80.0);
+    assert_true(assay_noise_bound(&noise, &critical, NULL) == 0.0);
+    assay_noise_add(&noise, 1.0, ASSAY_NORMAL);
+    assert_true(assay_noise_log_p(&noise, 3.0) == assay_student_log_p(3.0, ASSAY_NORMAL));
+    (void)state;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -189,6 +208,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(by_counts, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(without_a_variance, counted_set_up, counted_tear_down),
         cmocka_unit_test(probabilities),
+        cmocka_unit_test(few_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

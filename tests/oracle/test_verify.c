@@ -134,6 +134,27 @@ static void one_pixel(void **state)
     assay_image_destroy(r);
 }
 
+/* The edge of a light: all samples of the one image hit it, all of the other miss it, and neither
+ * has a variance there.  Of two samples each that is chance, of 64 it is not. */
+static void edge_of_few_samples(void **state)
+{
+    for (int samples = 2; samples <= 64; samples *= 32) {
+        assay_image *c                               = normal_images_make(*state, 14, 0.5, samples),
+                    *r                               = normal_images_make(*state, 15, 0.5, samples);
+        const int pixel                              = 20 * SIDE + 7;
+        normal_images_values(c, "R")[pixel]          = 0.0F;
+        normal_images_values(r, "R")[pixel]          = 20.0F;
+        normal_images_values(c, "Variance.R")[pixel] = 0.0F;
+        normal_images_values(r, "Variance.R")[pixel] = 0.0F;
+        assay_verdict *verdict                       = normal_images_verify(*state, c, r, NULL);
+        assert_int_equal(normal_images_find(verdict, "welch").kind,
+                         samples == 2 ? ASSAY_VERDICT_PASS : ASSAY_VERDICT_FAIL);
+        assay_verdict_destroy(verdict);
+        assay_image_destroy(c);
+        assay_image_destroy(r);
+    }
+}
+
 /* A pixel that few samples outweigh is large, and its variance with it: told, not judged. */
 static void firefly_is_told(void **state)
 {
@@ -482,6 +503,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(leak_in_one_tile, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(rare_light_missed, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(one_pixel, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(edge_of_few_samples, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(firefly_is_told, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(black_would_have_passed, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(detection_that_was_asked, counted_set_up,
