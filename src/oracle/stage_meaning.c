@@ -37,13 +37,18 @@ static double factor_of(size_t count, const double *values, const double *right)
     return square > 0.0 ? both / square : NAN;
 }
 
+/* It must explain the parts as well as the whole: the last places of one weight of 1e12 outweigh
+ * all that is wrong elsewhere. */
 static bool is_factor(size_t count, const double *values, const double *right, double factor)
 {
-    misfit m = {0.0, 0.0};
+    misfit whole = {0.0, 0.0}, parts = {0.0, 0.0};
     for (size_t i = 0; i < count; i++) {
-        add(&m, values[i], right[i], factor * right[i]);
+        add(&whole, values[i], right[i], factor * right[i]);
+        if (right[i] != 0.0) {
+            add(&parts, values[i] / right[i], 1.0, factor);
+        }
     }
-    return explains(&m);
+    return explains(&whole) && explains(&parts);
 }
 
 /* Columns in threes, the first of three for the last. */
