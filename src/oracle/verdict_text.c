@@ -49,6 +49,21 @@ static void add_probability(assay_text_builder *text, const assay_finding *f)
     }
 }
 
+/* Of a bound of 0 there is no share. */
+static void add_share(assay_text_builder *text, const assay_finding *f)
+{
+    if (f->bound == 0.0 && f->in_bounds > 1.0) {
+        assay_text_add(text, "; nothing else passes");
+        return;
+    }
+    if (!isnan(f->in_bounds)) {
+        assay_text_add(text, "; %.4g times what passes", f->in_bounds);
+    }
+    if (!isnan(f->bound)) {
+        assay_text_add(text, " (%.4g)", f->bound);
+    }
+}
+
 void assay_finding_add_sentences(assay_text_builder *text, const assay_finding *f)
 {
     assay_finding_add_name(text, f);
@@ -57,12 +72,7 @@ void assay_finding_add_sentences(assay_text_builder *text, const assay_finding *
     if (!isnan(f->effect)) {
         assay_text_add(text, "; effect %+.4g", f->effect);
     }
-    if (!isnan(f->in_bounds)) {
-        assay_text_add(text, "; %.4g times what passes", f->in_bounds);
-    }
-    if (!isnan(f->bound)) {
-        assay_text_add(text, " (%.4g)", f->bound);
-    }
+    add_share(text, f);
     if (!isnan(f->ulps)) {
         assay_text_add(text, "; %.4g ulps", f->ulps);
     }

@@ -329,6 +329,26 @@ static void words(void **state)
     assay_verdict_destroy(verdict);
 }
 
+static void words_of_a_bound(void **state)
+{
+    static const char *const said[] = {"; 1e+300 times what passes (2)", "; nothing else passes;"};
+    static const double      bounds[] = {2.0, 0.0};
+    for (int i = 0; i < 2; i++) {
+        assay_verdict *verdict = NULL;
+        char          *text    = NULL;
+        assay_finding  f       = finding("splat", "splat/result", ASSAY_VERDICT_FAIL);
+        f.bound                = bounds[i];
+        f.in_bounds            = 1e300;
+        f.values               = 7;
+        assert_int_equal(assay_verdict_create(*state, "c", "r", &verdict), ASSAY_OK);
+        assert_int_equal(assay_verdict_add(verdict, &f), ASSAY_OK);
+        assert_int_equal(assay_verdict_paragraph(verdict, &text), ASSAY_OK);
+        assert_non_null(strstr(text, said[i]));
+        assay_text_destroy(*state, text);
+        assay_verdict_destroy(verdict);
+    }
+}
+
 /* ---- memory ---- */
 
 typedef assay_status (*output)(const assay_verdict *verdict, char **text_out);
@@ -382,6 +402,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(junit_skips_the_unseen, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(annotations_are_lines, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(words, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(words_of_a_bound, counted_set_up, counted_tear_down),
         cmocka_unit_test(every_refused_block),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
