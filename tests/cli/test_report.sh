@@ -185,8 +185,8 @@ phone|s/^  #stage { width: 100%;/  #stage {/
 pair|s/^    settings?.missing && .*//
 pair|s/^ *settings?.*not judged.*//
 pair|s/^    settings?.shared_seed && .*//
-pair|s/^    !isThis && .*//
-pass|s/^    !isThis && /    /
+pair|s/return isThis ?/return true ?/
+pass|s/return isThis ?/return false ?/
 pass|s/: null\].filter(Boolean));/: null]);/
 all|s/^  drawConvergence();$//
 all|s/<body>/<body><img src="https:\/\/example.org\/x.png" alt="">/

@@ -27,6 +27,7 @@ function buildVerdict() {
   section.replaceChildren(...[
     make("h2", { id: "verdict-heading" }, pill(verdict.verdict), " ", shown().name),
     make("p", {}, verdict.summary ?? ""),
+    ...othersOf(verdict).map((text) => make("p", { className: "caveat others" }, text)),
     ...caveatsOf(verdict).map((text) => make("p", { className: "caveat" }, text)),
     first ? linksTo(verdict, first) : null].filter(Boolean));
 }
@@ -35,12 +36,17 @@ function buildVerdict() {
 const nameIn = (path) => String(path).replace(/ and \d+ more$/, "").replace(/\/+$/, "")
   .replace(/^.*\//, "").replace(/\.(exr|hdr)$/, "");
 
-/* What the word above does not say: whose verdict it is, and what it did not look at. */
-function caveatsOf({ candidate, reference: truth = "its own inputs", settings }) {
+/* Whose verdict it is, where it names other files than the page shows. */
+function othersOf({ candidate, reference: truth = "its own inputs" }) {
   const isTruth = truth === "its own inputs" || nameIn(truth) === reference.name;
   const isThis = isTruth && nameIn(candidate) === shown().name;
+  return isThis ? []
+    : [`Here are ${shown().name} and ${reference.name}; the verdict is of ${candidate} against ${truth}.`];
+}
+
+/* What the word above does not say. */
+function caveatsOf({ settings }) {
   return [
-    !isThis && `Here are ${shown().name} and ${reference.name}; the verdict is of ${candidate} against ${truth}.`,
     settings?.shared_seed && `The same seed in both: ${settings.shared_seed}.`,
     settings?.["not judged"] && `Not judged: ${settings["not judged"]}.`,
     settings?.missing && `Missing, of the reference's arrays: ${settings.missing}.`,
