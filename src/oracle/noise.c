@@ -5,6 +5,7 @@
 #include "oracle/noise.h"
 
 #include <assert.h>
+#include <stdint.h>
 
 #include "core/numerics.h"
 #include "oracle/student.h"
@@ -35,7 +36,7 @@ static double least_log_p(const assay_noise *noise, double asked)
     const double few   = fmin(noise->candidate_samples, noise->reference_samples);
     const double many  = fmax(noise->candidate_samples, noise->reference_samples);
     double       least = assay_log(2.0);
-    for (double k = 1.0; k <= few && least >= asked; k += 1.0) {
+    for (uint32_t k = 1; k <= few && least >= asked; k++) {
         least -= assay_log((many + k) / k);
     }
     return few > 0.0 ? fmin(least, 0.0) : -INFINITY;
