@@ -11,7 +11,7 @@
 #include "math/select.h"
 #include "oracle/critical_values.h"
 #include "oracle/student.h"
-#include "oracle/verify_judge.h"
+#include "oracle/verify_chance.h"
 
 static assay_finding start(const assay_verify_channel *channel, const char *test)
 {
@@ -96,9 +96,12 @@ assay_status assay_judge_add_whole(assay_judgement *j, int channel, assay_verdic
     finding.values                      = (uint64_t)sums->pixels;
     fill(&finding, sums, &noise, j->whole.decision.log_bound);
     finding.visible = visible(sums, &noise, &j->whole.critical, &j->power);
+    char text[ASSAY_CHANCE_TEXT];
     if (count_rejected(&j->whole, channel, ASSAY_TILE_LEVELS) > 0) {
         finding.kind    = ASSAY_VERDICT_FAIL;
         finding.meaning = assay_meaning_of_whole(j, channel);
+        assay_chance_ask(&finding, j, c, sums,
+                         assay_chance_share(c, ASSAY_TILE_LEVELS, sums, &j->whole.critical), text);
     }
     ask_detection(&finding, j->options->detect, finding.visible, finding.reference);
     ask_black(&finding);
@@ -136,6 +139,27 @@ static assay_status summarise(assay_judgement *j, const assay_verify_channel *c,
     return ASSAY_OK;
 }
 
+/* The rejected tile of which chance is ruled out most surely. */
+static const assay_noisy_sums *surest_tile(assay_judgement *j, int channel, int level,
+                                           double *share_out)
+{
+    const assay_verify_channel *c      = &j->channels[channel];
+    const assay_noisy_sums     *surest = NULL;
+    for (uint64_t i = 0; i < j->tiles.decision.rejected; i++) {
+        const uint64_t item = j->tiles.tests.kept[i].item;
+        if (assay_test_channel(item) == channel && assay_test_level(item) == level) {
+            const assay_noisy_sums *tile =
+                &c->sums.levels[level].sums[item - assay_test_item(channel, level, 0)];
+            const double share = assay_chance_share(c, level, tile, &j->tiles.critical);
+            if (!surest || share < *share_out) {
+                surest     = tile;
+                *share_out = share;
+            }
+        }
+    }
+    return surest;
+}
+
 assay_status assay_judge_add_tiles(assay_judgement *j, int channel, int level,
                                    assay_verdict *verdict)
 {
@@ -148,7 +172,8 @@ assay_status assay_judge_add_tiles(assay_judgement *j, int channel, int level,
     const assay_noisy_sums *sums  = &c->sums.levels[level].sums[summary.worst];
     const assay_noise       noise = assay_verify_channel_noise(c, level, sums);
     const uint64_t          bad   = count_rejected(&j->tiles, channel, level);
-    char                    test[16];
+    double                  share = 0.0;
+    char                    test[16], text[ASSAY_CHANCE_TEXT];
     snprintf(test, sizeof test, "tile-%d", c->sums.levels[level].side);
     assay_finding finding = start(c, test);
     finding.values        = c->sums.levels[level].count;
@@ -158,6 +183,8 @@ assay_status assay_judge_add_tiles(assay_judgement *j, int channel, int level,
     if (bad > 0) {
         finding.kind    = ASSAY_VERDICT_FAIL;
         finding.meaning = assay_meaning_of_tile(j, channel, level, bad, sums->difference);
+        const assay_noisy_sums *surest = surest_tile(j, channel, level, &share);
+        assay_chance_ask(&finding, j, c, surest, share, text);
     }
     if (level == 0) {
         ask_detection(&finding, j->options->detect_tile, summary.visible_largest,
