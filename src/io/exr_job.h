@@ -1,0 +1,35 @@
+/* exr_job.h - an OpenEXR file that is being read. */
+#ifndef ASSAY_IO_EXR_JOB_H
+#define ASSAY_IO_EXR_JOB_H
+
+#include <OpenEXR/openexr.h>
+
+#include "io/image_data.h"
+
+typedef struct {
+    assay_context           *context;
+    const char              *name;
+    const uint8_t           *bytes;
+    size_t                   count;
+    exr_context_t            exr;
+    const exr_attr_chlist_t *channels;
+    exr_attr_box2i_t         data, display; /* inclusive */
+    assay_image             *image;
+    const char *const       *wanted;  /* names, up to a NULL; or NULL: all       */
+    assay_channel           *targets; /* one a channel of the file, in its order; without data where
+                                         it is not wanted */
+    assay_status      refused;        /* what there is no memory for, said already */
+    exr_compression_t compression;
+    bool              deaf; /* what the library says is not kept: several threads are in it */
+    char              message[200];
+} exr_job;
+
+/* The error of the library's result, with its first message. */
+assay_status assay_exr_fail(const exr_job *job, exr_result_t result, const char *where);
+
+/* ---- exr_chunks.c ---- */
+
+/* All pixels, into the targets.  Errors: FORMAT, MEMORY, UNSUPPORTED. */
+assay_status assay_exr_read_chunks(exr_job *job);
+
+#endif
