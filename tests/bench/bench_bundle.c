@@ -1,9 +1,7 @@
 /* bench_bundle.c - how long a verdict on a bundle of 100,000 records takes. */
+#include "bench.h"
+
 #include <ftw.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <time.h>
 
 #include "assay/replay.h"
 #include "core/random.h"
@@ -11,21 +9,6 @@
 #include "math/vec.h"
 
 enum { RECORDS = 100000, SIDE = 128, PIXELS = SIDE * SIDE };
-
-static double seconds(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void check(assay_context *context, assay_status status)
-{
-    if (status != ASSAY_OK) {
-        fprintf(stderr, "bench_bundle: %s\n", assay_context_error(context));
-        exit(assay_status_exit_code(status));
-    }
-}
 
 static int remove_entry(const char *path, const struct stat *info, int kind, struct FTW *at)
 {
@@ -39,9 +22,9 @@ static void add(assay_context *context, assay_bundle *bundle, const char *name, 
                 size_t rows, size_t columns, const double *values)
 {
     assay_array *table = NULL;
-    check(context, assay_array_create(context, rows, columns, &table));
+    bench_require(context, assay_array_create(context, rows, columns, &table));
     memcpy(assay_array_data(table), values, rows * columns * sizeof *values);
-    check(context, assay_bundle_add_table(bundle, name, unit, table));
+    bench_require(context, assay_bundle_add_table(bundle, name, unit, table));
     assay_array_destroy(table);
 }
 
@@ -83,16 +66,17 @@ static void write_bundle(assay_context *context, const floor_data *d, const char
     static const double size[PIXELS] = {0.0};
     assay_bundle       *bundle       = NULL;
     assay_image        *image        = NULL;
-    check(context, assay_bundle_create(context, path, &bundle));
-    check(context, assay_bundle_describe(bundle, "a", "0.3"));
-    check(context, assay_bundle_describe(bundle, "assay:camera.position", "0.5 1 0.5"));
-    check(context, assay_bundle_describe(bundle, "assay:camera.forward", "0 -1 0"));
-    check(context, assay_bundle_describe(bundle, "assay:camera.right", "1 0 0"));
-    check(context, assay_bundle_describe(bundle, "assay:camera.up", "0 0 -1"));
-    check(context, assay_bundle_describe(bundle, "assay:camera.yfov", "0.92729521800161223"));
-    check(context, assay_image_create(context, SIDE, SIDE, &image));
-    check(context, assay_image_add_channel(image, "Z", ASSAY_CHANNEL_FLOAT, NULL));
-    check(context, assay_bundle_add_image(bundle, "gbuffer/depth", "m", image));
+    bench_require(context, assay_bundle_create(context, path, &bundle));
+    bench_require(context, assay_bundle_describe(bundle, "a", "0.3"));
+    bench_require(context, assay_bundle_describe(bundle, "assay:camera.position", "0.5 1 0.5"));
+    bench_require(context, assay_bundle_describe(bundle, "assay:camera.forward", "0 -1 0"));
+    bench_require(context, assay_bundle_describe(bundle, "assay:camera.right", "1 0 0"));
+    bench_require(context, assay_bundle_describe(bundle, "assay:camera.up", "0 0 -1"));
+    bench_require(context,
+                  assay_bundle_describe(bundle, "assay:camera.yfov", "0.92729521800161223"));
+    bench_require(context, assay_image_create(context, SIDE, SIDE, &image));
+    bench_require(context, assay_image_add_channel(image, "Z", ASSAY_CHANNEL_FLOAT, NULL));
+    bench_require(context, assay_bundle_add_image(bundle, "gbuffer/depth", "m", image));
     assay_image_destroy(image);
     add(context, bundle, "records/position", "m", RECORDS, 3, d->position);
     add(context, bundle, "records/normal", "", RECORDS, 3, d->normal);
@@ -107,19 +91,21 @@ static void write_bundle(assay_context *context, const floor_data *d, const char
     if (radiance) {
         add(context, bundle, "splat/batch.0/radiance", "W/(m2 sr)", PIXELS, 3, radiance);
     }
-    check(context, assay_bundle_finish(bundle));
+    bench_require(context, assay_bundle_finish(bundle));
     assay_bundle_destroy(bundle);
 }
 
 static void verify(assay_context *context, const char *path)
 {
     assay_verdict *verdict = NULL;
-    const double   start = seconds(CLOCK_MONOTONIC), busy = seconds(CLOCK_PROCESS_CPUTIME_ID);
-    check(context, assay_verdict_create(context, "candidate", "reference", &verdict));
-    check(context, assay_verify_bundle(context, path, path, NULL, ASSAY_PRECISION_FLOAT, verdict));
+    const double   start   = bench_seconds(CLOCK_MONOTONIC),
+                 busy      = bench_seconds(CLOCK_PROCESS_CPUTIME_ID);
+    bench_require(context, assay_verdict_create(context, "candidate", "reference", &verdict));
+    bench_require(context,
+                  assay_verify_bundle(context, path, path, NULL, ASSAY_PRECISION_FLOAT, verdict));
     printf("%d records on %d x %d pixels: %s after %.2f s, %.2f s of processor, %d threads\n",
            RECORDS, SIDE, SIDE, assay_verdict_kind_text(assay_verdict_whole(verdict)),
-           seconds(CLOCK_MONOTONIC) - start, seconds(CLOCK_PROCESS_CPUTIME_ID) - busy,
+           bench_seconds(CLOCK_MONOTONIC) - start, bench_seconds(CLOCK_PROCESS_CPUTIME_ID) - busy,
            assay_context_threads(context));
     assay_verdict_destroy(verdict);
 }
@@ -137,11 +123,11 @@ int main(void)
     snprintf(made, sizeof made, "%s/made", root);
     write_bundle(context, d, path, NULL, NULL);
     const assay_replay_options options = {.stage = "splat", .in = path, .out = made};
-    check(context, assay_replay(context, &options));
+    bench_require(context, assay_replay(context, &options));
     snprintf(file, sizeof file, "%s/splat/batch.0/weight.npy", made);
-    check(context, assay_array_read_npy(context, file, &weight));
+    bench_require(context, assay_array_read_npy(context, file, &weight));
     snprintf(file, sizeof file, "%s/splat/batch.0/radiance.npy", made);
-    check(context, assay_array_read_npy(context, file, &radiance));
+    bench_require(context, assay_array_read_npy(context, file, &radiance));
     snprintf(path, sizeof path, "%s/whole", root);
     write_bundle(context, d, path, assay_array_values(weight), assay_array_values(radiance));
     verify(context, path);
