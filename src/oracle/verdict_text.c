@@ -3,6 +3,7 @@
  * Invariant: a number is printed as a decimal that reads back to the same bits, and where bits
  * matter as a hexadecimal one beside it; what is NaN in a finding is not spoken of. */
 #include <math.h>
+#include <string.h>
 
 #include "core/numerics.h"
 #include "oracle/verdict_data.h"
@@ -34,8 +35,10 @@ void assay_finding_add_place(assay_text_builder *text, const assay_finding *find
 static void add_values(assay_text_builder *text, const assay_finding *f)
 {
     if (!isnan(f->candidate) && !isnan(f->reference)) {
-        assay_text_add(text, ": candidate %.17g (%a), reference %.17g (%a)", f->candidate,
-                       f->candidate, f->reference, f->reference);
+        /* What a stage should have made is not the reference's, where its inputs are not. */
+        const char *right = strcmp(f->test, "rounding") == 0 ? "replayed" : "reference";
+        assay_text_add(text, ": candidate %.17g (%a), %s %.17g (%a)", f->candidate, f->candidate,
+                       right, f->reference, f->reference);
     }
 }
 
@@ -46,6 +49,15 @@ static void add_probability(assay_text_builder *text, const assay_finding *f)
         assay_text_add(text, "; p = 10^%.0f", f->log_p / assay_log(10.0));
     } else if (!isnan(f->p)) {
         assay_text_add(text, "; p = %.3g", f->p);
+    }
+}
+
+/* What passes unseen matters where something passes. */
+static void add_width(assay_text_builder *text, const assay_finding *f)
+{
+    if (!isnan(f->width) && f->kind != ASSAY_VERDICT_FAIL) {
+        assay_text_add(text, "; bounds of %.2g of a typical value (one in ten: %.2g)", f->width,
+                       f->width_90);
     }
 }
 
@@ -70,7 +82,11 @@ void assay_finding_add_sentences(assay_text_builder *text, const assay_finding *
     if (!isnan(f->visible)) {
         assay_text_add(text, "; smallest bias that would have been seen %.4g", f->visible);
     }
-    if (f->values > 0) {
+    add_width(text, f);
+    if (f->unjudged > 0) {
+        assay_text_add(text, "; %llu of %llu values were judged", (unsigned long long)f->values,
+                       (unsigned long long)(f->values + f->unjudged));
+    } else if (f->values > 0) {
         assay_text_add(text, "; %llu values", (unsigned long long)f->values);
     }
     assay_text_add_char(text, '.');
@@ -135,7 +151,7 @@ assay_status assay_verdict_paragraph(const assay_verdict *verdict, char **text_o
     if (first >= 0) {
         const assay_finding *f = &verdict->findings[first];
         assay_text_add(&text,
-                       f->kind == ASSAY_VERDICT_FAIL ? " First stage that is wrong: %s. "
+                       f->kind == ASSAY_VERDICT_FAIL ? " First stage that fails: %s. "
                                                      : " First stage in doubt: %s. ",
                        f->stage);
         assay_finding_add_sentences(&text, f);

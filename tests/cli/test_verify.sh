@@ -30,7 +30,7 @@ ends() { # NAME CODE WORD ARGUMENT...
 }
 
 ends "the same light passes" 0 "PASS: " verify "$folder/same.exr" $truth
-ends "one bounce fails" 1 "First stage that is wrong: image" \
+ends "one bounce fails" 1 "First stage that fails: image" \
     verify "$folder/dark.exr" $truth --ignore-metadata
 ends "runs pass" 0 "PASS: " verify "$folder/same.exr" "$folder/other.exr" $truth
 ends "runs, said in another way" 0 "PASS: " verify --candidate "$folder/same.exr" \

@@ -103,7 +103,7 @@ static void first_stage_then_farthest(void **state)
     char *text = NULL;
     assert_int_equal(assay_verdict_paragraph(verdict, &text), ASSAY_OK);
     assert_non_null(strstr(text, "FAIL: c.exr differs from r.exr in 4 of 6 tests."));
-    assert_non_null(strstr(text, "First stage that is wrong: records. b, test welch"));
+    assert_non_null(strstr(text, "First stage that fails: records. b, test welch"));
     assert_null(strchr(text, '\n'));
     assay_text_destroy(*state, text);
     assay_verdict_destroy(verdict);
