@@ -52,6 +52,7 @@ typedef struct {
     assay_verdict_kind kind;
     uint64_t           values;    /* that were tested                              */
     uint64_t           unjudged;  /* of the same array, of which nothing is known  */
+    uint64_t           vacuous;   /* of `values`: whose bound is as large as they  */
     assay_place        place;     /* the worst of them, also where all pass        */
     double             candidate; /* there, in the array's unit                    */
     double             reference;

@@ -41,6 +41,7 @@ static bool has_width(const bundle_comparison *c, size_t i)
 static assay_status measure_widths(assay_context *context, bundle_comparison *c)
 {
     size_t  sized  = 0;
+    bool    exact  = c->unknown < c->count;
     double *widths = assay_allocate(context, c->count + 1, sizeof *widths);
     if (!widths) {
         return assay_fail_memory(context, "the widths of bounds");
@@ -49,9 +50,10 @@ static assay_status measure_widths(assay_context *context, bundle_comparison *c)
         if (has_width(c, i)) {
             widths[sized++] = bundle_compare_bound(c, i) / fabs(c->out->values[i]);
         }
+        exact = exact && !(c->out->values[i] == 0.0 && bundle_compare_bound(c, i) > 0.0);
     }
-    c->width    = sized > 0 ? assay_select(widths, sized, sized / 2) : NAN;
-    c->width_90 = sized > 0 ? assay_select(widths, sized, sized - 1 - sized / 10) : NAN;
+    c->width    = sized > 0 ? assay_select(widths, sized, sized / 2) : exact ? 0.0 : NAN;
+    c->width_90 = sized > 0 ? assay_select(widths, sized, sized - 1 - sized / 10) : c->width;
     assay_release(context, widths);
     return ASSAY_OK;
 }
@@ -127,10 +129,6 @@ void bundle_compare_describe(const bundle_comparison *c, char *words, size_t siz
                                         : "All bounds are as large as what they bound: this "
                                           "precision decides nothing here.");
         break;
-    case ASSAY_VERDICT_PASS:
-        if (c->vacuous > 0) {
-            snprintf(words, size, "%zu of the bounds are as large as what they bound.", c->vacuous);
-        }
-        break;
+    case ASSAY_VERDICT_PASS: break;
     }
 }

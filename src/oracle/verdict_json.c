@@ -53,7 +53,8 @@ static bool add_finding(cJSON *list, const assay_finding *f)
            add_text(json, "channel", f->channel) && add_text(json, "test", f->test) &&
            add_text(json, "verdict", assay_verdict_kind_text(f->kind)) &&
            add_number(json, "values", (double)f->values) &&
-           add_number(json, "unjudged", (double)f->unjudged) && add_place(json, &f->place) &&
+           add_number(json, "unjudged", (double)f->unjudged) &&
+           add_number(json, "vacuous", (double)f->vacuous) && add_place(json, &f->place) &&
            add_exact(json, "candidate", f->candidate) &&
            add_exact(json, "reference", f->reference) && add_number(json, "effect", f->effect) &&
            add_number(json, "bound", f->bound) && add_number(json, "in_bounds", f->in_bounds) &&

@@ -52,12 +52,30 @@ static void add_probability(assay_text_builder *text, const assay_finding *f)
     }
 }
 
+static void add_excess(assay_text_builder *text, const assay_finding *f)
+{
+    if (f->in_bounds > 1.0 && f->bound == 0.0) {
+        assay_text_add(text, "; nothing but the latter passes");
+        return;
+    }
+    if (!isnan(f->in_bounds)) {
+        assay_text_add(text, "; %.4g times what passes", f->in_bounds);
+    }
+    if (!isnan(f->bound)) {
+        assay_text_add(text, " (%.4g)", f->bound);
+    }
+}
+
 /* What passes unseen matters where something passes. */
 static void add_width(assay_text_builder *text, const assay_finding *f)
 {
     if (!isnan(f->width) && f->kind != ASSAY_VERDICT_FAIL) {
         assay_text_add(text, "; bounds of %.2g of a typical value (one in ten: %.2g)", f->width,
                        f->width_90);
+        if (f->vacuous > 0) {
+            assay_text_add(text, ", of %llu values as large as they",
+                           (unsigned long long)f->vacuous);
+        }
     }
 }
 
@@ -69,13 +87,8 @@ void assay_finding_add_sentences(assay_text_builder *text, const assay_finding *
     if (!isnan(f->effect)) {
         assay_text_add(text, "; effect %+.4g", f->effect);
     }
-    if (!isnan(f->in_bounds)) {
-        assay_text_add(text, "; %.4g times what passes", f->in_bounds);
-    }
-    if (!isnan(f->bound)) {
-        assay_text_add(text, " (%.4g)", f->bound);
-    }
-    if (!isnan(f->ulps)) {
+    add_excess(text, f);
+    if (!isnan(f->ulps) && f->reference != 0.0) {
         assay_text_add(text, "; %.4g ulps", f->ulps);
     }
     add_probability(text, f);

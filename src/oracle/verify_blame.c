@@ -51,13 +51,14 @@ static void name_wrong(assay_text_builder *text, const assay_finding *f)
 }
 
 typedef struct {
-    int wrong, unknown;
+    int                  wrong, unknown;
+    const assay_finding *loose; /* passes, and would have with much else in places; NULL */
 } inputs;
 
 /* Names the stage's inputs that are not right, and counts them. */
 static inputs look_at_inputs(const blaming *b, const oracle_stage *stage, assay_text_builder *names)
 {
-    inputs found = {0, 0};
+    inputs found = {.loose = NULL};
     for (const assay_stage_array *input = stage->info.inputs; input->name; input++) {
         char name[ASSAY_BUNDLE_NAME];
         if (!stage_find_input(b->candidate, input->name, name)) {
@@ -65,6 +66,7 @@ static inputs look_at_inputs(const blaming *b, const oracle_stage *stage, assay_
         }
         const assay_finding *worst = worst_of(b->verdict, name);
         found.unknown += !worst;
+        found.loose = worst && worst->vacuous > 0 ? worst : found.loose;
         if (worst && worst->kind != ASSAY_VERDICT_PASS) {
             if (found.wrong < MOST_NAMED) {
                 assay_text_add(names, "%s", found.wrong ? ", " : "");
@@ -124,10 +126,15 @@ static void conclude(assay_text_builder *text, const inputs *found, const char *
                        "given these.",
                        names);
     } else if (found->unknown > 0) {
-        assay_text_add(text, " The error is made in this stage if it was given what the bundle "
-                             "has; nothing says so.");
+        assay_text_add(text, " The error is made in this stage if it was given the bundle's "
+                             "inputs, which nothing shows.");
+    } else if (found->loose) {
+        assay_text_add(text,
+                       " Its inputs pass: the error is made in this stage, or in %s where bounds "
+                       "are as large as what they bound (%llu numbers).",
+                       found->loose->array, (unsigned long long)found->loose->vacuous);
     } else {
-        assay_text_add(text, " What it was given is right: the error is made in this stage.");
+        assay_text_add(text, " Its inputs pass: the error is made in this stage.");
     }
 }
 

@@ -57,6 +57,7 @@ static assay_status add_finding(const verification *v, const char *stage,
     f.kind          = bundle_compare_kind(c);
     f.values        = c->count - c->unknown;
     f.unjudged      = c->unknown;
+    f.vacuous       = c->vacuous;
     f.width         = c->width;
     f.width_90      = c->width_90;
     bundle_compare_describe(c, words, sizeof words);

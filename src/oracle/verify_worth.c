@@ -107,7 +107,9 @@ static assay_status insist(assay_verdict *verdict, size_t index, double detect, 
         return doubt(verdict, index, words);
     }
     if (!isnan(detect) && isnan(f->width)) {
-        return doubt(verdict, index, "All its numbers are 0: there is no typical one to be off.");
+        return doubt(verdict, index,
+                     "All its numbers are 0, but not only 0 passes: nothing tells whether that is "
+                     "little.");
     }
     if (f->width > detect) {
         snprintf(words, sizeof words,

@@ -99,7 +99,7 @@ static void blames(const assay_verdict *verdict, const char *array, const char *
             fail_msg("%s: '%s' is not in: %s", array, words[i], f.meaning);
         }
     }
-    if (!sure != !strstr(f.meaning, "is right: the error is made in this stage")) {
+    if (!sure != !strstr(f.meaning, "Its inputs pass: the error is made in this stage.")) {
         fail_msg("%s: %s", array, f.meaning);
     }
 }
@@ -143,10 +143,20 @@ static void test_two_stages(void **state)
                                   "only if it was given these"},
            false);
     assay_verdict_destroy(verdict);
+    /* A weight where a record stands may be anything: what follows from it fails. */
+    memcpy(bad, d, sizeof *bad);
+    bad->values[SPLAT_WEIGHT][SPLAT_STANDS] *= 1.01;
+    verdict = splat_verify(*state, bad, d, ASSAY_PRECISION_FLOAT);
+    assert_int_equal(finding_of(verdict, "splat/batch.0/weight").kind, ASSAY_VERDICT_PASS);
+    assert_string_equal(splat_first(verdict).stage, "splat-light");
+    assert_non_null(strstr(splat_first(verdict).meaning,
+                           "or in splat/batch.0/weight where bounds are as large"));
+    assay_verdict_destroy(verdict);
     /* Alone, nothing says what a stage was given. */
+    bad->values[SPLAT_SUM][3 * 40] *= 1.01;
     verdict = splat_verify(*state, bad, NULL, ASSAY_PRECISION_FLOAT);
     blames(verdict, "splat/batch.0/radiance",
-           (const char *const[2]){"if it was given what the bundle has"}, false);
+           (const char *const[2]){"if it was given the bundle's inputs"}, false);
     assay_verdict_destroy(verdict);
     free(bad);
     free(d);

@@ -55,6 +55,10 @@ static void test_no_width(void **state)
     const stage_output out = output_of(values, bounds);
     bundle_comparison  c   = {.out = &out, .values = values};
     assert_int_equal(bundle_compare(*state, &c), ASSAY_OK);
+    assert_true(c.width == 0.0 && c.width_90 == 0.0);
+    bounds[9] = 1e-30;
+    c         = (bundle_comparison){.out = &out, .values = values};
+    assert_int_equal(bundle_compare(*state, &c), ASSAY_OK);
     assert_true(isnan(c.width) && isnan(c.width_90));
     assert_int_equal(bundle_compare_kind(&c), ASSAY_VERDICT_PASS);
     for (size_t i = 0; i < COUNT; i++) {

@@ -118,6 +118,25 @@ noise_pool *noise_pool_made_up(noise_kind kind, int side)
     return pool;
 }
 
+noise_pool *noise_pool_of_rare_light(int side, int rare, bool lit)
+{
+    enum { CORNER = 8, WIDTH = 6 };
+    noise_pool *pool = pool_of(side);
+    for (size_t i = 0; i < (size_t)side * (size_t)side; i++) {
+        assay_random random = assay_random_start(96, ASSAY_STAGE_TEST, i, 0);
+        const int    x = (int)(i % (size_t)side) - CORNER, y = (int)(i / (size_t)side) - CORNER;
+        const bool   pooled = lit && x >= 0 && x < WIDTH && y >= 0 && y < WIDTH;
+        for (size_t s = 0; s < NOISE_POOL_SAMPLES; s++) {
+            const double v =
+                1.0 + 0.2 * normal(&random) + (pooled && s % (size_t)rare == 0 ? rare / 3.0 : 0.0);
+            for (int c = 0; c < 3; c++) {
+                sample_of(pool, i, s)[c] = (float)((1.0 - 0.3 * c) * v);
+            }
+        }
+    }
+    return pool;
+}
+
 noise_pool *noise_pool_batches(const noise_pool *pool, int batch)
 {
     noise_pool *made = pool_of(pool->side);

@@ -1,7 +1,9 @@
 /* verdict_power.c - the tables of docs/verdicts.md: how often `assay verify` says FAIL of images
  * that are the same light, and of images with a defect that was planted.
  *
- *     verdict_power [NULLS [PLANTED]]     comparisons in all (10000), and of each defect (1000)
+ *     verdict_power [NULLS [PLANTED [RARE]]]     comparisons in all (10000), of each defect (1000),
+ *                                                and of each row on light that is rarely found
+ * (500)
  *
  * Images are drawn from pools of samples (tests/support/noise_pool.h): of our Cornell box, once as
  * path traces it by default and once with light found by scattered rays alone, which is full of
@@ -183,14 +185,42 @@ static void tell_planted(assay_context *context, const pools *p, uint64_t count)
     }
 }
 
-int main(int argc, char **argv)
+/* Light that few samples find: missed by chance, which is no error, and missed altogether. */
+static void tell_rare(assay_context *context, int rare, uint64_t count)
 {
-    const uint64_t              nulls   = argc > 1 ? strtoull(argv[1], NULL, 10) : 10000;
-    const uint64_t              planted = argc > 2 ? strtoull(argv[2], NULL, 10) : 1000;
-    const assay_context_options options = {.progress = show, .user = "verdict_power"};
-    assay_context              *context = NULL;
-    assay_scene                *scene   = NULL;
-    require(assay_context_create(&options, &context) == ASSAY_OK, "a context");
+    static const struct {
+        int samples, reference_samples;
+        way how;
+    } rows[] = {{4, 256, OWN},    {16, 256, OWN},   {64, 256, OWN},    {256, 1024, OWN},
+                {4, 256, RUNS},   {16, 256, RUNS},  {64, 256, RUNS},   {4, 256, ALONE},
+                {16, 256, ALONE}, {64, 256, ALONE}, {256, 1024, ALONE}};
+    enum { ROWS = sizeof rows / sizeof rows[0] };
+    noise_pool *lit   = noise_pool_of_rare_light(SIDE, rare, true);
+    noise_pool *unlit = noise_pool_of_rare_light(SIDE, rare, false);
+    for (int i = 0; i < ROWS; i++) {
+        double failed[2];
+        for (int missing = 0; missing < 2; missing++) {
+            experiment e = {.candidate         = missing ? unlit : lit,
+                            .reference         = lit,
+                            .samples           = rows[i].samples,
+                            .reference_samples = rows[i].reference_samples,
+                            .how               = rows[i].how,
+                            .first = (uint64_t)(3000 + 4 * rare + 2 * i + missing) << 32};
+            run(context, &e, count);
+            failed[missing] = 100.0 * e.failed / (double)count;
+        }
+        printf("| 1 in %d | %d | %d | %s | %.1f | %.1f |\n", rare, rows[i].samples,
+               rows[i].reference_samples, WAYS[rows[i].how], failed[0], failed[1]);
+        fflush(stdout);
+    }
+    noise_pool_free(lit);
+    noise_pool_free(unlit);
+}
+
+/* What takes renders. */
+static void tell_rendered(assay_context *context, uint64_t nulls, uint64_t planted)
+{
+    assay_scene *scene = NULL;
     require(assay_scene_load(context, "scenes/cornell-box/cornell-box.gltf", NULL, &scene) ==
                 ASSAY_OK,
             assay_context_error(context));
@@ -204,8 +234,12 @@ int main(int argc, char **argv)
     }
     noise_pool_match(p.made[NOISE_ELSEWHERE], p.made[NOISE_GAUSS]);
     noise_pool_match(p.bsdf, p.mis);
-    tell_nulls(context, &p, nulls);
-    tell_planted(context, &p, planted);
+    if (nulls > 0) {
+        tell_nulls(context, &p, nulls);
+    }
+    if (planted > 0) {
+        tell_planted(context, &p, planted);
+    }
     for (int k = 0; k < NOISE_KINDS; k++) {
         noise_pool_free(p.made[k]);
     }
@@ -215,6 +249,25 @@ int main(int argc, char **argv)
     noise_pool_free(p.mis_many);
     noise_pool_free(p.bounces_many);
     assay_scene_destroy(scene);
+}
+
+int main(int argc, char **argv)
+{
+    const uint64_t              nulls   = argc > 1 ? strtoull(argv[1], NULL, 10) : 10000;
+    const uint64_t              planted = argc > 2 ? strtoull(argv[2], NULL, 10) : 1000;
+    const uint64_t              rare    = argc > 3 ? strtoull(argv[3], NULL, 10) : 500;
+    const assay_context_options options = {.progress = show, .user = "verdict_power"};
+    assay_context              *context = NULL;
+    require(assay_context_create(&options, &context) == ASSAY_OK, "a context");
+    if (nulls > 0 || planted > 0) {
+        tell_rendered(context, nulls, planted);
+    }
+    if (rare > 0) {
+        printf("\n| found by | samples | of the reference | candidate's noise | the same light | "
+               "without it |\n|---|---|---|---|---|---|\n");
+        tell_rare(context, 128, rare);
+        tell_rare(context, 1024, rare);
+    }
     assay_context_destroy(context);
     return 0;
 }
