@@ -72,10 +72,10 @@ ASSAY_API assay_status assay_verify_require(assay_verdict *verdict, const char *
 
 /* What a pass shall be worth, of every array that a stage judged: findings that pass cannot tell
  * where a typical number may be off by more than `detect` of itself within its bound (the finding's
- * width; NaN: not asked), or where less than the part `judged` of the numbers has a bound (NaN: not
- * asked; less than half never passes).  With `judged`, stages of the setting "blind" cannot tell
- * either.  Errors: ARGUMENT (detect <= 0, judged not in [0, 1]),
- * MEMORY. */
+ * width; of numbers that are all 0 nothing is asked; NaN: of none), or where less than the part
+ * `judged` of the numbers has a bound (NaN: not asked; less than half never passes).  With
+ * `judged`, stages of the setting "blind" cannot tell either.  Errors: ARGUMENT (detect <= 0,
+ * judged not in [0, 1]), MEMORY. */
 ASSAY_API assay_status assay_verify_insist(assay_verdict *verdict, double detect, double judged);
 
 #ifdef __cplusplus

@@ -41,7 +41,6 @@ static bool has_width(const bundle_comparison *c, size_t i)
 static assay_status measure_widths(assay_context *context, bundle_comparison *c)
 {
     size_t  sized  = 0;
-    bool    exact  = c->unknown < c->count;
     double *widths = assay_allocate(context, c->count + 1, sizeof *widths);
     if (!widths) {
         return assay_fail_memory(context, "the widths of bounds");
@@ -50,10 +49,9 @@ static assay_status measure_widths(assay_context *context, bundle_comparison *c)
         if (has_width(c, i)) {
             widths[sized++] = bundle_compare_bound(c, i) / fabs(c->out->values[i]);
         }
-        exact = exact && !(c->out->values[i] == 0.0 && bundle_compare_bound(c, i) > 0.0);
     }
-    c->width    = sized > 0 ? assay_select(widths, sized, sized / 2) : exact ? 0.0 : NAN;
-    c->width_90 = sized > 0 ? assay_select(widths, sized, sized - 1 - sized / 10) : c->width;
+    c->width    = sized > 0 ? assay_select(widths, sized, sized / 2) : NAN;
+    c->width_90 = sized > 0 ? assay_select(widths, sized, sized - 1 - sized / 10) : NAN;
     assay_release(context, widths);
     return ASSAY_OK;
 }

@@ -18,8 +18,8 @@ typedef struct {
     size_t vacuous;         /* whose bound is as large as themselves                            */
     size_t beyond, worst;   /* how many are beyond their bounds; the farthest                   */
     double worst_in_bounds; /* below 0: of none anything is known                              */
-    double width, width_90; /* bound / |number|: the median, and what one in ten exceeds; where
-                               all numbers are 0: 0 where their bounds are, too, else NaN      */
+    double width, width_90; /* bound / |number|: the median, and what one in ten exceeds; NaN
+                               where all numbers are 0                                         */
 } bundle_comparison;
 
 /* Errors: MEMORY. */

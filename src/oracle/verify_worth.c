@@ -106,11 +106,6 @@ static assay_status insist(assay_verdict *verdict, size_t index, double detect, 
                  judged);
         return doubt(verdict, index, words);
     }
-    if (!isnan(detect) && isnan(f->width)) {
-        return doubt(verdict, index,
-                     "All its numbers are 0, but not only 0 passes: nothing tells whether that is "
-                     "little.");
-    }
     if (f->width > detect) {
         snprintf(words, sizeof words,
                  "A typical number may be off by %.2g of itself unseen, more than was asked for: "

@@ -80,10 +80,11 @@ for bad in "--level 0" "--level 0.5" "--level x" "--correction bonferroni" "--ti
     refuses "$bad" 2 "${bad%% *}" verify "$folder/same.exr" $truth $bad
 done
 mkdir "$folder/bundle"
-for option in "--allow 0.1" "--detect 0.1" "--channels R" "--reference-exact" "--ignore-metadata"; do
+for option in "--allow 0.1" "--detect-tile 0.1" "--channels R" "--reference-exact" "--ignore-metadata"; do
     refuses "${option%% *} of a bundle" 2 "go with images" verify "$folder/bundle" $option
 done
 refuses "a stage of images" 2 "--require goes with" verify "$folder/same.exr" $truth --require splat
+refuses "a part of images" 2 "--judged goes with" verify "$folder/same.exr" $truth --judged 0.9
 refuses "an image against a bundle" 2 "the reference is a bundle" verify "$folder/same.exr" \
     --reference "$folder/bundle"
 refuses "a bundle against an image" 2 "bundle/manifest.json" verify "$folder/bundle" $truth

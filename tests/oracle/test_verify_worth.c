@@ -55,10 +55,6 @@ static void test_no_width(void **state)
     const stage_output out = output_of(values, bounds);
     bundle_comparison  c   = {.out = &out, .values = values};
     assert_int_equal(bundle_compare(*state, &c), ASSAY_OK);
-    assert_true(c.width == 0.0 && c.width_90 == 0.0);
-    bounds[9] = 1e-30;
-    c         = (bundle_comparison){.out = &out, .values = values};
-    assert_int_equal(bundle_compare(*state, &c), ASSAY_OK);
     assert_true(isnan(c.width) && isnan(c.width_90));
     assert_int_equal(bundle_compare_kind(&c), ASSAY_VERDICT_PASS);
     for (size_t i = 0; i < COUNT; i++) {
@@ -188,7 +184,7 @@ static void test_insist(void **state)
     }
 }
 
-/* What fails goes on to fail, what is all 0 has no typical number, and nonsense is refused. */
+/* What fails goes on to fail, of what is all 0 nothing is asked, and nonsense is refused. */
 static void test_insist_edges(void **state)
 {
     assay_verdict *verdict = three_findings(*state);
@@ -201,8 +197,7 @@ static void test_insist_edges(void **state)
     f.width = 9.0;
     assert_int_equal(assay_verdict_add(verdict, &f), ASSAY_OK);
     assert_int_equal(assay_verify_insist(verdict, 0.5, 0.5), ASSAY_OK);
-    assert_int_equal(assay_verdict_at(verdict, 3).kind, ASSAY_VERDICT_CANNOT_TELL);
-    assert_non_null(strstr(assay_verdict_at(verdict, 3).meaning, "are 0"));
+    assert_int_equal(assay_verdict_at(verdict, 3).kind, ASSAY_VERDICT_PASS);
     assert_int_equal(assay_verdict_at(verdict, 4).kind, ASSAY_VERDICT_FAIL);
     assert_int_equal(assay_verify_insist(verdict, 0.0, NAN), ASSAY_ERR_ARGUMENT);
     assert_int_equal(assay_verify_insist(verdict, NAN, 1.5), ASSAY_ERR_ARGUMENT);
@@ -224,6 +219,21 @@ static void test_blind_stage(void **state)
     assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_CANNOT_TELL);
     assert_string_equal(splat_first(verdict).stage, "visible");
     assert_int_equal(splat_count_of(verdict, "gather"), 1);
+    assay_verdict_destroy(verdict);
+    free(d);
+}
+
+/* [gautron06]'s own variant of splatting has no bounds. */
+static void test_no_bounds(void **state)
+{
+    splat_data *d = splat_make_data(*state);
+    stage_case  c = stage_case_begin(*state), r = stage_case_begin(*state);
+    for (int k = 0; k < 2; k++) {
+        splat_add_arrays(k ? &r : &c, d, -1);
+        stage_case_text(k ? &r : &c, "assay:splat.variant", "published");
+    }
+    assay_verdict *verdict = splat_verify_cases(&c, &r);
+    assert_string_equal(assay_verdict_get(verdict, "blind"), "splat-light");
     assay_verdict_destroy(verdict);
     free(d);
 }
@@ -260,6 +270,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_insist, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_insist_edges, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_blind_stage, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_no_bounds, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_require, context_set_up, context_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

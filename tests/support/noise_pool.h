@@ -62,6 +62,9 @@ assay_image *noise_pool_draw(assay_context *context, const noise_pool *pool, int
 /* Takes an image's variance away: 0, of a single sample. */
 void noise_pool_drop_variance(assay_image *image);
 
+/* The image without its SampleCount, which is destroyed.  NULL without memory. */
+assay_image *noise_pool_uncounted(assay_context *context, assay_image *image);
+
 /* The pool's very means, with the variances of `samples` samples. */
 assay_image *noise_pool_exact(assay_context *context, const noise_pool *pool, int samples);
 

@@ -23,8 +23,10 @@ enum { SIDE = 48, TILE = 8 };
 #define LEVEL 0.01
 
 /* How the candidate's noise is known. */
-typedef enum { OWN, RUNS, ALONE, ALLOWED } way;
-static const char *const WAYS[] = {"own variance", "4 runs", "alone", "allow 0.05"};
+typedef enum { OWN, RUNS, ALONE, ALLOWED, OWN_UNCOUNTED, RUNS_UNCOUNTED } way;
+static const char *const WAYS[] = {
+    "own variance",          "4 runs", "alone", "allow 0.05", "own variance, no SampleCount",
+    "4 runs, no SampleCount"};
 
 typedef struct {
     const noise_pool *candidate, *reference;
@@ -45,10 +47,11 @@ static void require(bool ok, const char *what)
 
 static assay_status compare(void *user, uint64_t index, int worker)
 {
-    experiment                 *e       = user;
-    const assay_context_options options = {.threads = 1};
-    const int                   runs    = e->how == RUNS ? 4 : 1;
-    assay_context              *context = NULL;
+    experiment                 *e         = user;
+    const assay_context_options options   = {.threads = 1};
+    const bool                  uncounted = e->how == OWN_UNCOUNTED || e->how == RUNS_UNCOUNTED;
+    const int                   runs      = e->how == RUNS || e->how == RUNS_UNCOUNTED ? 4 : 1;
+    assay_context              *context   = NULL;
     assay_image                *candidates[4], *reference;
     assay_verdict              *verdict = NULL;
     require(assay_context_create(&options, &context) == ASSAY_OK, "a context");
@@ -58,6 +61,9 @@ static assay_status compare(void *user, uint64_t index, int worker)
             noise_pool_draw(context, e->candidate, e->samples, number + (uint64_t)k, e->defect);
         if (e->how == ALONE || e->how == ALLOWED) {
             noise_pool_drop_variance(candidates[k]);
+        }
+        if (uncounted) {
+            candidates[k] = noise_pool_uncounted(context, candidates[k]);
         }
     }
     reference =
@@ -191,9 +197,23 @@ static void tell_rare(assay_context *context, int rare, uint64_t count)
     static const struct {
         int samples, reference_samples;
         way how;
-    } rows[] = {{4, 256, OWN},    {16, 256, OWN},   {64, 256, OWN},    {256, 1024, OWN},
-                {4, 256, RUNS},   {16, 256, RUNS},  {64, 256, RUNS},   {4, 256, ALONE},
-                {16, 256, ALONE}, {64, 256, ALONE}, {256, 1024, ALONE}};
+    } rows[] = {{4, 256, OWN},
+                {16, 256, OWN},
+                {64, 256, OWN},
+                {256, 1024, OWN},
+                {4, 256, RUNS},
+                {16, 256, RUNS},
+                {64, 256, RUNS},
+                {4, 256, OWN_UNCOUNTED},
+                {16, 256, OWN_UNCOUNTED},
+                {64, 256, OWN_UNCOUNTED},
+                {4, 256, RUNS_UNCOUNTED},
+                {16, 256, RUNS_UNCOUNTED},
+                {64, 256, RUNS_UNCOUNTED},
+                {4, 256, ALONE},
+                {16, 256, ALONE},
+                {64, 256, ALONE},
+                {256, 1024, ALONE}};
     enum { ROWS = sizeof rows / sizeof rows[0] };
     noise_pool *lit   = noise_pool_of_rare_light(SIDE, rare, true);
     noise_pool *unlit = noise_pool_of_rare_light(SIDE, rare, false);
