@@ -112,6 +112,7 @@ static void test_wrong_dump(void **state)
     for (size_t i = 0; i < 3 * SPLAT_RECORDS; i++) {
         bad->values[SPLAT_RECORD_NORMAL][i] *= -1.0;
     }
+    bad->values[SPLAT_WEIGHT][10] *= 1.0 + 0x1p-23; /* the reference's, rounded in another way */
     assay_verdict *verdict = splat_verify(*state, bad, d, ASSAY_PRECISION_FLOAT);
     blames(verdict, "splat/batch.0/weight",
            (const char *const[2]){"judged with records/normal (not the reference's at row ",
@@ -152,7 +153,16 @@ static void test_two_stages(void **state)
     assert_non_null(strstr(splat_first(verdict).meaning,
                            "or in splat/batch.0/weight where bounds are as large"));
     assay_verdict_destroy(verdict);
+    /* Radiance there passes in one stage and fails in the next: it is not right. */
+    memcpy(bad, d, sizeof *bad);
+    bad->values[SPLAT_SUM][3 * SPLAT_STANDS] *= 1.05;
+    verdict = splat_verify(*state, bad, d, ASSAY_PRECISION_FLOAT);
+    assert_int_equal(finding_of(verdict, "splat/batch.0/radiance").kind, ASSAY_VERDICT_PASS);
+    blames(verdict, "splat/result",
+           (const char *const[2]){"judged with splat/batch.0/radiance (fails itself)"}, false);
+    assay_verdict_destroy(verdict);
     /* Alone, nothing says what a stage was given. */
+    memcpy(bad, d, sizeof *bad);
     bad->values[SPLAT_SUM][3 * 40] *= 1.01;
     verdict = splat_verify(*state, bad, NULL, ASSAY_PRECISION_FLOAT);
     blames(verdict, "splat/batch.0/radiance",
