@@ -96,9 +96,9 @@ void assay_finding_add_sentences(assay_text_builder *text, const assay_finding *
         assay_text_add(text, "; smallest bias that would have been seen %.4g", f->visible);
     }
     add_width(text, f);
-    if (f->unjudged > 0) {
-        assay_text_add(text, "; %llu of %llu values were judged", (unsigned long long)f->values,
-                       (unsigned long long)(f->values + f->unjudged));
+    const unsigned long long judged = f->values, unjudged = f->unjudged;
+    if (unjudged > 0) {
+        assay_text_add(text, "; %llu of %llu values were judged", judged, judged + unjudged);
     } else if (f->values > 0) {
         assay_text_add(text, "; %llu values", (unsigned long long)f->values);
     }

@@ -48,16 +48,16 @@ static worth worth_of(const assay_verdict *verdict)
 
 static void add_worth(assay_text_builder *text, const worth *w)
 {
+    const unsigned long long judged = w->values, unjudged = w->unjudged;
     if (w->fewest) {
+        const unsigned long long some = w->fewest->values, all = size_of(w->fewest);
         assay_text_add(text,
                        "Of the arrays that were judged %llu of %llu numbers have a bound, fewest "
                        "in %s: %llu of %llu.",
-                       (unsigned long long)w->values, (unsigned long long)(w->values + w->unjudged),
-                       w->fewest->array, (unsigned long long)w->fewest->values,
-                       (unsigned long long)size_of(w->fewest));
+                       judged, judged + unjudged, w->fewest->array, some, all);
     } else {
         assay_text_add(text, "Of the arrays that were judged all %llu numbers have a bound.",
-                       (unsigned long long)w->values);
+                       judged);
     }
     if (w->widest && isinf(w->widest->width)) {
         assay_text_add(text, " A typical number of %s may be anything unseen.", w->widest->array);

@@ -227,6 +227,12 @@
     const isFirst = (id) => document.querySelector(id)?.hasAttribute("data-first");
     check(!link || isFirst(link.getAttribute("href")), "the link goes to the first failure");
     check(all("#findings tbody tr[id]").length > 0, "the stages are listed");
+    const heads = all("#findings thead th").length;
+    check(all("#findings tbody tr[id]").every((row) => row.cells.length === heads), "rows are whole");
+    const partly = shown().verdict.findings.findIndex((f) => f.unjudged > 0);
+    if (partly < 0) return;
+    const words = $(`finding-${partly}`).textContent;
+    check(words.includes("9 of 12") && words.includes("0.125"), "how much was judged, and how closely");
   }
 
   function help() {
