@@ -51,7 +51,7 @@ static void name_wrong(assay_text_builder *text, const assay_finding *f)
 }
 
 typedef struct {
-    int                  wrong, unknown;
+    int                  count, wrong, unknown;
     const assay_finding *loose; /* passes, and would have with much else in places; NULL */
 } inputs;
 
@@ -65,6 +65,7 @@ static inputs look_at_inputs(const blaming *b, const oracle_stage *stage, assay_
             continue;
         }
         const assay_finding *worst = worst_of(b->verdict, name);
+        found.count++;
         found.unknown += !worst;
         found.loose = worst && worst->vacuous > 0 ? worst : found.loose;
         if (worst && worst->kind != ASSAY_VERDICT_PASS) {
@@ -128,6 +129,9 @@ static void conclude(assay_text_builder *text, const inputs *found, const char *
     } else if (found->unknown > 0) {
         assay_text_add(text, " The error is made in this stage if it was given the bundle's "
                              "inputs, which nothing shows.");
+    } else if (found->count == 0) {
+        assay_text_add(text, " It has no inputs but scene and camera: the error is made in this "
+                             "stage.");
     } else if (found->loose) {
         assay_text_add(text,
                        " Its inputs pass: the error is made in this stage, or in %s where bounds "

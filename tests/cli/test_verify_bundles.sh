@@ -58,6 +58,12 @@ run verify "$folder/dumped" --reference "$folder/dump"
 [ "$code" -eq 1 ] && grep -q 'splat/albedo (not the reference.s at row 255, column 2), but made what the reference has' \
     "$folder/stdout"
 result $? "one that was right and dumped something else is not"
+cp -r "$folder/dump" "$folder/moved"
+sed -i 's/\("assay:camera.position":.*"\)-\{0,1\}[0-9.]* /\10.5 /' "$folder/moved/manifest.json"
+run verify "$folder/moved" --scene "$box"
+[ "$code" -eq 1 ] && ! cmp -s "$folder/moved/manifest.json" "$folder/dump/manifest.json" &&
+    grep -q 'fails: visible.*no inputs but scene and camera: the error is made in this stage' "$folder/stdout"
+result $? "a stage without inputs is to blame"
 
 for bad in "--judged 0.4" "--judged 1.1" "--judged x" "--detect 0" "--detect nan"; do
     refuses "$bad" 2 "${bad%% *}" verify "$folder/dump" $bad

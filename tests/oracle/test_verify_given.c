@@ -194,6 +194,41 @@ static void test_many_wrong(void **state)
     free(d);
 }
 
+typedef struct {
+    const char *candidate, *reference;
+} paths;
+
+static assay_status verify_once(assay_context *context, void *user)
+{
+    const paths   *p       = user;
+    assay_verdict *verdict = NULL;
+    assay_status   status  = assay_verdict_create(context, "candidate", "reference", &verdict);
+    status                 = status ? status
+                                    : assay_verify_bundle(context, p->candidate, p->reference, NULL,
+                                                          ASSAY_PRECISION_FLOAT, verdict);
+    status                 = status ? status : assay_verify_insist(verdict, 1e-9, 0.5);
+    status                 = status ? status : assay_verify_require(verdict, "visible");
+    assay_verdict_destroy(verdict);
+    return status;
+}
+
+/* Every block that is refused while a failure is explained and a demand is made. */
+static void test_refused_memory(void **state)
+{
+    splat_data *d = splat_make_data(*state);
+    stage_case  c = stage_case_begin(*state), r = stage_case_begin(*state);
+    const paths p = {c.path, r.path};
+    splat_add_arrays(&r, d, -1);
+    d->values[SPLAT_RECORD_RADIUS][3] *= 1.5;
+    splat_add_arrays(&c, d, -1);
+    stage_case_finish(&c);
+    stage_case_finish(&r);
+    assert_true(failing_each(verify_once, (void *)&p) > 200);
+    stage_case_end(&c);
+    stage_case_end(&r);
+    free(d);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -202,6 +237,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_wrong_dump, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_two_stages, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_many_wrong, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_refused_memory, context_set_up, context_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
