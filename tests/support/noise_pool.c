@@ -128,7 +128,7 @@ noise_pool *noise_pool_of_rare_light(int side, int rare, bool lit)
         const bool   pooled = lit && x >= 0 && x < WIDTH && y >= 0 && y < WIDTH;
         for (size_t s = 0; s < NOISE_POOL_SAMPLES; s++) {
             const double v =
-                1.0 + 0.2 * normal(&random) + (pooled && s % (size_t)rare == 0 ? rare / 3.0 : 0.0);
+                1.0 + 0.2 * normal(&random) + (pooled && s % (size_t)rare == 0 ? 3.0 * rare : 0.0);
             for (int c = 0; c < 3; c++) {
                 sample_of(pool, i, s)[c] = (float)((1.0 - 0.3 * c) * v);
             }

@@ -44,8 +44,8 @@ extern const char *const noise_defect_names[DEFECT_COUNT];
 noise_pool *noise_pool_render(assay_context *context, assay_scene *scene, int side,
                               const char *parameter, const char *value);
 noise_pool *noise_pool_made_up(noise_kind kind, int side);
-/* Dull walls, and on 6 x 6 pixels of them a pool of light, of a third of theirs, that one sample in
- * `rare` (a power of 2) finds.  lit: false leaves it out, all else is the same. */
+/* Dull walls, and on 6 x 6 pixels of them a pool of light, three times as bright, that one sample
+ * in `rare` (a power of 2) finds.  lit: false leaves it out, all else is the same. */
 noise_pool *noise_pool_of_rare_light(int side, int rare, bool lit);
 /* Each sample the mean of `batch` of the other pool's: as if each stood for so many. */
 noise_pool *noise_pool_batches(const noise_pool *pool, int batch);
