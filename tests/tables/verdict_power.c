@@ -192,7 +192,7 @@ static void tell_planted(assay_context *context, const pools *p, uint64_t count)
 }
 
 /* Light that few samples find: missed by chance, which is no error, and missed altogether. */
-static void tell_rare(assay_context *context, int rare, uint64_t count)
+static void tell_rare(assay_context *context, uint64_t count)
 {
     static const struct {
         int samples, reference_samples;
@@ -215,26 +215,33 @@ static void tell_rare(assay_context *context, int rare, uint64_t count)
                 {64, 256, ALONE},
                 {256, 1024, ALONE}};
     enum { ROWS = sizeof rows / sizeof rows[0] };
-    noise_pool *lit   = noise_pool_of_rare_light(SIDE, rare, true);
-    noise_pool *unlit = noise_pool_of_rare_light(SIDE, rare, false);
+    static const int rare[] = {128, 1024};
+    noise_pool      *pools_of[2][2]; /* rarity, and whether the light is missing */
+    printf("\n| candidate's noise | samples | of the reference |");
+    for (int k = 0; k < 2; k++) {
+        pools_of[k][0] = noise_pool_of_rare_light(SIDE, rare[k], true);
+        pools_of[k][1] = noise_pool_of_rare_light(SIDE, rare[k], false);
+        printf(" 1 in %d: same light | without it |", rare[k]);
+    }
+    printf("\n|---|---|---|---|---|---|---|\n");
     for (int i = 0; i < ROWS; i++) {
-        double failed[2];
-        for (int missing = 0; missing < 2; missing++) {
-            experiment e = {.candidate         = missing ? unlit : lit,
-                            .reference         = lit,
+        printf("| %s | %d | %d |", WAYS[rows[i].how], rows[i].samples, rows[i].reference_samples);
+        for (int k = 0; k < 4; k++) {
+            experiment e = {.candidate         = pools_of[k / 2][k % 2],
+                            .reference         = pools_of[k / 2][0],
                             .samples           = rows[i].samples,
                             .reference_samples = rows[i].reference_samples,
                             .how               = rows[i].how,
-                            .first = (uint64_t)(3000 + 4 * rare + 2 * i + missing) << 32};
+                            .first = (uint64_t)(3000 + 4 * rare[k / 2] + 2 * i + k % 2) << 32};
             run(context, &e, count);
-            failed[missing] = 100.0 * e.failed / (double)count;
+            printf(" %.1f |", 100.0 * e.failed / (double)count);
+            fflush(stdout);
         }
-        printf("| 1 in %d | %d | %d | %s | %.1f | %.1f |\n", rare, rows[i].samples,
-               rows[i].reference_samples, WAYS[rows[i].how], failed[0], failed[1]);
-        fflush(stdout);
+        printf("\n");
     }
-    noise_pool_free(lit);
-    noise_pool_free(unlit);
+    for (int k = 0; k < 4; k++) {
+        noise_pool_free(pools_of[k / 2][k % 2]);
+    }
 }
 
 /* What takes renders. */
@@ -283,10 +290,7 @@ int main(int argc, char **argv)
         tell_rendered(context, nulls, planted);
     }
     if (rare > 0) {
-        printf("\n| found by | samples | of the reference | candidate's noise | the same light | "
-               "without it |\n|---|---|---|---|---|---|\n");
-        tell_rare(context, 128, rare);
-        tell_rare(context, 1024, rare);
+        tell_rare(context, rare);
     }
     assay_context_destroy(context);
     return 0;
