@@ -106,7 +106,7 @@ deps-test: ## install what the tests need (Debian)
 # ---- the two commands ----
 MUTANT_ENV = BUILD=$(BUILD) \
    MUTANT_COMPILE="$(CC) $(filter-out -DASSAY_VERSION%,$(CPPFLAGS)) $(CFLAGS)" \
-   MUTANT_LINK="$(CXX) $(LDFLAGS)" \
+   MUTANT_LINK="$(CXX) $(LDFLAGS)" MUTANT_COMMAND="$(CLI_O)" \
    MUTANT_LIBS="$(HELP_O) $(filter-out %/main.o,$(GEN_O)) $(BUILD)/libassay.a -lcmocka $(LDLIBS)"
 
 DEMO := build/demo
@@ -156,7 +156,7 @@ test: deps-test ## build and run all tests
 
 MUTANT_LISTS = tests/mutants/*.txt
 mutants: deps-test ## break the source on purpose, also where `make test` does not
-	@$(MAKE) --no-print-directory -s -j$$(nproc) $(TESTS)
+	@$(MAKE) --no-print-directory -s -j$$(nproc) all $(TESTS)
 	@for list in $(MUTANT_LISTS); do $(MUTANT_ENV) MUTANTS=$$list \
 	   tests/tools/run.sh tests/mutants/test_mutants.sh || exit 1; done
 

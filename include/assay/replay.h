@@ -56,7 +56,8 @@ ASSAY_API assay_status assay_replay(assay_context *context, const assay_replay_o
  * adds a finding for each array.  Errors: ARGUMENT (candidate and reference are of other scenes,
  * parameters, cameras: the message names what), FORMAT (an array that the reference lacks, of
  * another shape, dtype or unit; a broken file), DOMAIN (NaN), and the others of assay_replay; the
- * verdict is then worthless.  Arrays that no stage judges stand in its setting "not judged".
+ * verdict is then worthless.  Arrays that no stage judges stand in its setting "not judged", stages
+ * that ran and have no bound of any number in "blind".
  *
  * reference NULL: nothing is said of the inputs themselves; for stages that are tested alone, on
  * inputs that no render made. */
@@ -68,6 +69,14 @@ ASSAY_API assay_status assay_verify_bundle(assay_context *context, const char *c
  * the verdict has none yet: what was to be judged and was not does not pass.  Errors: ARGUMENT (no
  * such stage), MEMORY. */
 ASSAY_API assay_status assay_verify_require(assay_verdict *verdict, const char *stages);
+
+/* What a pass shall be worth, of every array that a stage judged: findings that pass cannot tell
+ * where a typical number may be off by more than `detect` of itself within its bound (the finding's
+ * width; of numbers that are all 0 nothing is asked; NaN: of none), or where less than the part
+ * `judged` of the numbers has a bound (NaN: not asked; less than half never passes).  With
+ * `judged`, stages of the setting "blind" cannot tell either.  Errors: ARGUMENT (detect <= 0,
+ * judged not in [0, 1]), MEMORY. */
+ASSAY_API assay_status assay_verify_insist(assay_verdict *verdict, double detect, double judged);
 
 #ifdef __cplusplus
 }

@@ -51,6 +51,8 @@ typedef struct {
     const char        *test;    /* "welch", "rounding"                           */
     assay_verdict_kind kind;
     uint64_t           values;    /* that were tested                              */
+    uint64_t           unjudged;  /* of the same array, of which nothing is known  */
+    uint64_t           vacuous;   /* of `values`: whose bound is as large as they  */
     assay_place        place;     /* the worst of them, also where all pass        */
     double             candidate; /* there, in the array's unit                    */
     double             reference;
@@ -61,8 +63,11 @@ typedef struct {
     double ulps;               /* |candidate - reference| in units of the last place            */
     double p;                  /* of a difference this large, if there is none; two-sided,
                                   before correction for the number of tests                     */
-    double      log_p;         /* natural logarithm of p, also where p itself is 0              */
-    double      visible;       /* smallest bias that would have been seen, array's unit         */
+    double log_p;              /* natural logarithm of p, also where p itself is 0              */
+    double visible;            /* smallest bias that would have been seen, array's unit         */
+    double width;              /* of the bounds of an array without noise, bound / |value|: the
+                                  median, a smaller change of a typical value passes; infinite  */
+    double      width_90;      /* likewise: one value in ten may change by more                 */
     const char *meaning;       /* a sentence: what it could mean; NULL                          */
 } assay_finding;
 

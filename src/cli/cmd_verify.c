@@ -1,4 +1,5 @@
 /* cmd_verify.c - `assay verify CANDIDATE --reference REF`. */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -45,7 +46,8 @@ enum {
     OPT_HELP,
     OPT_SCENE,
     OPT_TIME,
-    OPT_REQUIRE
+    OPT_REQUIRE,
+    OPT_JUDGED
 };
 static const cli_option OPTIONS[] = {
     {"reference", 0, "REF",
@@ -57,7 +59,9 @@ static const cli_option OPTIONS[] = {
     {"tile", 0, "N", "side of the smallest tiles, 4 to 256 pixels (default 16)"},
     {"allow", 0, "X", "test equivalence: a bias of X of the mean passes, by tile and whole"},
     {"allow-absolute", 0, "X", "likewise, in the channel's unit"},
-    {"detect", 0, "X", "cannot tell unless a bias of X of the whole would have been seen"},
+    {"detect", 0, "X",
+     "cannot tell unless a bias of X of the whole would have been seen; of bundles: of a typical "
+     "number of each array"},
     {"detect-tile", 0, "X", "likewise in every tile, in parts of the image's mean"},
     {"samples", 0, "N", "of a candidate's pixel (default: its SampleCount)"},
     {"reference-samples", 0, "N", "of a reference's pixel (default: its SampleCount)"},
@@ -75,12 +79,22 @@ static const cli_option OPTIONS[] = {
     {"scene", 0, "F.gltf", "bundles: judges the stages that look at a scene, too"},
     {"time", 0, "T", "seconds into the scene's animations (default 0)"},
     {"require", 0, "STAGE,...", "bundles: cannot tell where one of these is not judged"},
+    {"judged", 0, "PART",
+     "bundles: cannot tell where of an array less than this is judged (default 0.5)"},
     CLI_SCENE_OPTIONS,
     {0}};
 
 static const char *read_positive(const char *value, double *out)
 {
     return cli_read_real(value, out) || !(*out > 0.0) ? "takes a number > 0" : NULL;
+}
+
+/* Less than half never passes. */
+static const char *read_part(const char *value, double *out)
+{
+    return cli_read_real(value, out) || !(*out >= 0.5 && *out <= 1.0)
+               ? "takes a number from 0.5 to 1"
+               : NULL;
 }
 
 static const char *read_samples(const char *value, uint32_t *out)
@@ -158,6 +172,7 @@ static const char *take_output(verify_request *r, int index, const char *value)
     case OPT_HELP: r->help = true; return NULL;
     case OPT_SCENE: r->bundles.scene = value; return NULL;
     case OPT_REQUIRE: r->bundles.require = value; return NULL;
+    case OPT_JUDGED: return read_part(value, &r->bundles.judged);
     case OPT_TIME: return cli_read_real(value, &r->bundles.time);
     default: break;
     }
@@ -196,11 +211,10 @@ static const char *take(void *user, int index, const char *value)
 /* What would be without an effect on bundles. */
 static const char *check_bundle_options(const assay_verify_options *o)
 {
-    const bool noise = o->allow > 0.0 || o->allow_absolute > 0.0 || o->detect > 0.0 ||
-                       o->detect_tile > 0.0 || o->candidate_samples || o->reference_samples ||
-                       o->reference_exact;
+    const bool noise = o->allow > 0.0 || o->allow_absolute > 0.0 || o->detect_tile > 0.0 ||
+                       o->candidate_samples || o->reference_samples || o->reference_exact;
     return noise || o->channels || o->ignore_metadata
-               ? "--allow, --detect, --samples, --reference-exact, --channels and "
+               ? "--allow, --detect-tile, --samples, --reference-exact, --channels and "
                  "--ignore-metadata go with images"
                : NULL;
 }
@@ -276,15 +290,22 @@ static assay_status write_output(cli_console *console, assay_context *context,
     return status;
 }
 
+/* The part of an array that was judged, in percent. */
+static double judged_of(const assay_finding *f)
+{
+    return f->values ? 100.0 * (double)f->values / (double)(f->values + f->unjudged) : NAN;
+}
+
 static void print_findings(const assay_verdict *verdict)
 {
-    printf("%-12s %-22s %-20s %-11s %10s %12s %12s\n", "stage", "array", "test", "verdict",
-           "in bounds", "effect", "visible");
+    printf("%-12s %-22s %-20s %-11s %10s %12s %12s %8s %10s\n", "stage", "array", "test", "verdict",
+           "in bounds", "effect", "visible", "judged %", "width");
     for (int i = 0; i < assay_verdict_count(verdict); i++) {
         const assay_finding f = assay_verdict_at(verdict, i);
-        printf("%-12s %s%s%-*s %-20s %-11s %10.4g %12.4g %12.4g\n", f.stage, f.array,
+        printf("%-12s %s%s%-*s %-20s %-11s %10.4g %12.4g %12.4g %8.4g %10.3g\n", f.stage, f.array,
                f.channel ? "." : "", (int)(22 - strlen(f.array)), f.channel ? f.channel : "",
-               f.test, assay_verdict_kind_text(f.kind), f.in_bounds, f.effect, f.visible);
+               f.test, assay_verdict_kind_text(f.kind), f.in_bounds, f.effect, f.visible,
+               judged_of(&f), f.width);
     }
 }
 
@@ -294,8 +315,12 @@ static void print_caveats(const assay_verdict *verdict)
     const char *seed     = assay_verdict_get(verdict, "shared_seed");
     const char *unjudged = assay_verdict_get(verdict, "not judged");
     const char *missing  = assay_verdict_get(verdict, "missing");
+    const char *blind    = assay_verdict_get(verdict, "blind");
     if (seed) {
         printf("The same seed in both: %s.\n", seed);
+    }
+    if (blind) {
+        printf("Without a bound on any number in this precision: stage %s.\n", blind);
     }
     if (unjudged) {
         printf("Not judged: %s.\n", unjudged);
@@ -342,7 +367,7 @@ static int verify(const verify_request *r)
     assay_verdict *verdict = NULL;
     const bool     bundle  = cli_is_bundle(r->candidates[0]);
     assay_status   status  = bundle ? cli_verify_bundle(context, r->candidates[0], r->reference,
-                                                        &r->bundles, r->options.precision, &verdict)
+                                                        &r->bundles, &r->options, &verdict)
                                     : assay_verify_files(context, r->candidates, r->count,
                                                          r->reference, &r->options, &verdict);
     if (status == ASSAY_OK) {
@@ -358,7 +383,7 @@ static int verify(const verify_request *r)
 int cli_verify(int count, char **argv)
 {
     verify_request request = {.options = assay_verify_options_default(),
-                              .bundles = {.options = cli_scene_request_default()}};
+                              .bundles = cli_bundle_request_default()};
     if (!cli_parse("verify", count, argv, OPTIONS, take, NULL, &request)) {
         return CLI_EXIT_USAGE;
     }

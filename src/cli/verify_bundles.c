@@ -1,7 +1,13 @@
 /* verify_bundles.c - a folder is taken for a bundle, all else for an image. */
 #include "verify_bundles.h"
 
+#include <math.h>
 #include <sys/stat.h>
+
+cli_bundle_request cli_bundle_request_default(void)
+{
+    return (cli_bundle_request){.judged = NAN, .options = cli_scene_request_default()};
+}
 
 bool cli_is_bundle(const char *path)
 {
@@ -12,16 +18,17 @@ bool cli_is_bundle(const char *path)
 const char *cli_bundle_check(const cli_bundle_request *request, int count, const char *candidate)
 {
     if (!cli_is_bundle(candidate)) {
-        return request->scene     ? "--scene goes with bundles"
-               : request->require ? "--require goes with bundles"
-                                  : NULL;
+        return request->scene           ? "--scene goes with bundles"
+               : request->require       ? "--require goes with bundles"
+               : request->judged >= 0.0 ? "--judged goes with bundles"
+                                        : NULL;
     }
     return count > 1 ? "one bundle at a time" : cli_scene_check(&request->options);
 }
 
 assay_status cli_verify_bundle(assay_context *context, const char *candidate, const char *reference,
-                               const cli_bundle_request *request, assay_precision precision,
-                               assay_verdict **verdict_out)
+                               const cli_bundle_request   *request,
+                               const assay_verify_options *options, assay_verdict **verdict_out)
 {
     assay_scene   *scene   = NULL;
     assay_verdict *verdict = NULL;
@@ -32,7 +39,9 @@ assay_status cli_verify_bundle(assay_context *context, const char *candidate, co
         status = status ? status : assay_scene_set_time(scene, request->time);
     }
     status = status ? status
-                    : assay_verify_bundle(context, candidate, reference, scene, precision, verdict);
+                    : assay_verify_bundle(context, candidate, reference, scene, options->precision,
+                                          verdict);
+    status = status ? status : assay_verify_insist(verdict, options->detect, request->judged);
     if (status == ASSAY_OK && request->require) {
         status = assay_verify_require(verdict, request->require);
     }

@@ -16,6 +16,7 @@ const oracle_stage *const assay_stages[] = {
     &stage_splat,
     &stage_splat_light,
     &stage_normalise,
+    &stage_combine_irradiance,
     &stage_combine,
     &stage_project,
     &stage_rotate,

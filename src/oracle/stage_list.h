@@ -6,6 +6,6 @@
 
 extern const oracle_stage stage_visible, stage_gather, stage_irradiance, stage_weights,
     stage_interpolate, stage_splat, stage_splat_light, stage_normalise, stage_combine,
-    stage_project, stage_rotate, stage_convert, stage_reflect;
+    stage_combine_irradiance, stage_project, stage_rotate, stage_convert, stage_reflect;
 
 #endif

@@ -73,33 +73,20 @@ static bool is_transposed(size_t columns, size_t count, const double *values, co
     return explains(&m);
 }
 
-static size_t count_different(size_t count, const double *values, const double *right)
-{
-    size_t different = 0;
-    for (size_t i = 0; i < count; i++) {
-        different += values[i] != right[i];
-    }
-    return different;
-}
-
 void stage_meaning(size_t columns, size_t count, const double *values, const double *right,
                    char *words, size_t size)
 {
     const double factor = factor_of(count, values, right);
+    words[0]            = '\0';
     if (isfinite(factor) && is_factor(count, values, right, factor)) {
         if (fabs(factor + 1.0) < 1e-3) {
-            snprintf(words, size, "All values have the wrong sign.");
+            snprintf(words, size, " All values have the wrong sign.");
         } else {
-            snprintf(words, size, "All values are %.6g times what they should be.", factor);
+            snprintf(words, size, " All values are %.6g times what they should be.", factor);
         }
     } else if (is_reversed(columns, count, values, right)) {
-        snprintf(words, size, "The first and the third of every three columns are exchanged.");
+        snprintf(words, size, " The first and the third of every three columns are exchanged.");
     } else if (is_transposed(columns, count, values, right)) {
-        snprintf(words, size, "Vectors of channels and channels of vectors are exchanged.");
-    } else {
-        snprintf(words, size,
-                 "The inputs of this stage are the candidate's own: the error is made "
-                 "in it (%zu of %zu values differ).",
-                 count_different(count, values, right), count);
+        snprintf(words, size, " Vectors of channels and channels of vectors are exchanged.");
     }
 }

@@ -4,7 +4,8 @@
 
 #include <stddef.h>
 
-/* A sentence on values (count of them, rows of columns) that should have been `right`. */
+/* A sentence, with a blank before it, on values (count of them, rows of columns) that should have
+ * been `right`; "" where they look like nothing that is known. */
 void stage_meaning(size_t columns, size_t count, const double *values, const double *right,
                    char *words, size_t size);
 

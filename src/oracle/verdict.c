@@ -21,7 +21,9 @@ assay_finding assay_finding_default(void)
                            .ulps      = NAN,
                            .p         = NAN,
                            .log_p     = NAN,
-                           .visible   = NAN};
+                           .visible   = NAN,
+                           .width     = NAN,
+                           .width_90  = NAN};
 }
 
 assay_place assay_place_row(uint64_t row, int column)
@@ -131,6 +133,18 @@ assay_status assay_verdict_add(assay_verdict *verdict, const assay_finding *find
         return assay_fail_memory(verdict->context, "a finding");
     }
     verdict->findings[verdict->count++] = copy;
+    return ASSAY_OK;
+}
+
+assay_status assay_verdict_mean(assay_verdict *verdict, size_t index, const char *meaning)
+{
+    assay_finding *f    = &verdict->findings[index];
+    char          *copy = assay_copy_text(verdict->context, meaning);
+    if (!copy) {
+        return assay_fail_memory(verdict->context, "a finding");
+    }
+    assay_release(verdict->context, (void *)f->meaning);
+    f->meaning = copy;
     return ASSAY_OK;
 }
 

@@ -134,7 +134,7 @@ static void add_suite(assay_text_builder *text, const assay_verdict *v, const ch
 }
 
 /* What a verdict on a bundle says nothing of, by the names of settings. */
-static const char *const UNSEEN[] = {"not judged", "missing"};
+static const char *const UNSEEN[] = {"blind", "not judged", "missing"};
 enum { UNSEEN_COUNT = sizeof UNSEEN / sizeof UNSEEN[0] };
 
 static size_t count_unseen(const assay_verdict *v)

@@ -18,6 +18,9 @@ struct assay_verdict {
     size_t                 setting_count, setting_capacity;
 };
 
+/* Gives a finding another meaning.  Errors: MEMORY. */
+assay_status assay_verdict_mean(assay_verdict *verdict, size_t index, const char *meaning);
+
 /* Takes away all findings from this one on. */
 void assay_verdict_truncate(assay_verdict *verdict, int count);
 

@@ -52,12 +52,15 @@ static bool add_finding(cJSON *list, const assay_finding *f)
     return json && add_text(json, "stage", f->stage) && add_text(json, "array", f->array) &&
            add_text(json, "channel", f->channel) && add_text(json, "test", f->test) &&
            add_text(json, "verdict", assay_verdict_kind_text(f->kind)) &&
-           add_number(json, "values", (double)f->values) && add_place(json, &f->place) &&
+           add_number(json, "values", (double)f->values) &&
+           add_number(json, "unjudged", (double)f->unjudged) &&
+           add_number(json, "vacuous", (double)f->vacuous) && add_place(json, &f->place) &&
            add_exact(json, "candidate", f->candidate) &&
            add_exact(json, "reference", f->reference) && add_number(json, "effect", f->effect) &&
            add_number(json, "bound", f->bound) && add_number(json, "in_bounds", f->in_bounds) &&
            add_number(json, "ulps", f->ulps) && add_number(json, "p", f->p) &&
            add_number(json, "log_p", f->log_p) && add_number(json, "visible", f->visible) &&
+           add_number(json, "width", f->width) && add_number(json, "width_90", f->width_90) &&
            add_text(json, "meaning", f->meaning);
 }
 

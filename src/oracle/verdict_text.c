@@ -3,6 +3,7 @@
  * Invariant: a number is printed as a decimal that reads back to the same bits, and where bits
  * matter as a hexadecimal one beside it; what is NaN in a finding is not spoken of. */
 #include <math.h>
+#include <string.h>
 
 #include "core/numerics.h"
 #include "oracle/verdict_data.h"
@@ -34,8 +35,10 @@ void assay_finding_add_place(assay_text_builder *text, const assay_finding *find
 static void add_values(assay_text_builder *text, const assay_finding *f)
 {
     if (!isnan(f->candidate) && !isnan(f->reference)) {
-        assay_text_add(text, ": candidate %.17g (%a), reference %.17g (%a)", f->candidate,
-                       f->candidate, f->reference, f->reference);
+        /* What a stage should have made is not the reference's, where its inputs are not. */
+        const char *right = strcmp(f->test, "rounding") == 0 ? "replayed" : "reference";
+        assay_text_add(text, ": candidate %.17g (%a), %s %.17g (%a)", f->candidate, f->candidate,
+                       right, f->reference, f->reference);
     }
 }
 
@@ -49,11 +52,10 @@ static void add_probability(assay_text_builder *text, const assay_finding *f)
     }
 }
 
-/* Of a bound of 0 there is no share. */
-static void add_share(assay_text_builder *text, const assay_finding *f)
+static void add_excess(assay_text_builder *text, const assay_finding *f)
 {
-    if (f->bound == 0.0 && f->in_bounds > 1.0) {
-        assay_text_add(text, "; nothing else passes");
+    if (f->in_bounds > 1.0 && f->bound == 0.0) {
+        assay_text_add(text, "; nothing but the latter passes");
         return;
     }
     if (!isnan(f->in_bounds)) {
@@ -61,6 +63,19 @@ static void add_share(assay_text_builder *text, const assay_finding *f)
     }
     if (!isnan(f->bound)) {
         assay_text_add(text, " (%.4g)", f->bound);
+    }
+}
+
+/* What passes unseen matters where something passes. */
+static void add_width(assay_text_builder *text, const assay_finding *f)
+{
+    if (!isnan(f->width) && f->kind != ASSAY_VERDICT_FAIL) {
+        assay_text_add(text, "; bounds of %.2g of a typical value (one in ten: %.2g)", f->width,
+                       f->width_90);
+        if (f->vacuous > 0) {
+            assay_text_add(text, ", of %llu values as large as they",
+                           (unsigned long long)f->vacuous);
+        }
     }
 }
 
@@ -72,15 +87,19 @@ void assay_finding_add_sentences(assay_text_builder *text, const assay_finding *
     if (!isnan(f->effect)) {
         assay_text_add(text, "; effect %+.4g", f->effect);
     }
-    add_share(text, f);
-    if (!isnan(f->ulps)) {
+    add_excess(text, f);
+    if (!isnan(f->ulps) && f->reference != 0.0) {
         assay_text_add(text, "; %.4g ulps", f->ulps);
     }
     add_probability(text, f);
     if (!isnan(f->visible)) {
         assay_text_add(text, "; smallest bias that would have been seen %.4g", f->visible);
     }
-    if (f->values > 0) {
+    add_width(text, f);
+    const unsigned long long judged = f->values, unjudged = f->unjudged;
+    if (unjudged > 0) {
+        assay_text_add(text, "; %llu of %llu values were judged", judged, judged + unjudged);
+    } else if (f->values > 0) {
         assay_text_add(text, "; %llu values", (unsigned long long)f->values);
     }
     assay_text_add_char(text, '.');
@@ -145,7 +164,7 @@ assay_status assay_verdict_paragraph(const assay_verdict *verdict, char **text_o
     if (first >= 0) {
         const assay_finding *f = &verdict->findings[first];
         assay_text_add(&text,
-                       f->kind == ASSAY_VERDICT_FAIL ? " First stage that is wrong: %s. "
+                       f->kind == ASSAY_VERDICT_FAIL ? " First stage that fails: %s. "
                                                      : " First stage in doubt: %s. ",
                        f->stage);
         assay_finding_add_sentences(&text, f);

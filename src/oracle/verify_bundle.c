@@ -1,17 +1,16 @@
-/* verify_bundle.c - a candidate's stages, each on the candidate's own inputs.
- *
- * Invariant: a number passes only where it is within its bound of what our stage makes of the same
- * inputs; where no bound is known, or all bounds are as large as what they bound, nothing is said
- * to pass. */
+/* verify_bundle.c - Invariant: each stage runs on the candidate's own inputs, so that nothing of
+ * earlier stages' differences is in what is said of it. */
 #include <stdio.h>
 #include <string.h>
 
 #include "core/context.h"
+#include "oracle/bundle_compare.h"
 #include "oracle/bundle_match.h"
 #include "oracle/stage.h"
-#include "oracle/stage_meaning.h"
+#include "oracle/verify_blame.h"
 #include "oracle/verify_inputs.h"
 #include "oracle/verify_unseen.h"
+#include "oracle/verify_worth.h"
 
 typedef struct {
     assay_context       *context;
@@ -23,101 +22,7 @@ typedef struct {
 
 /* ---- one array ---- */
 
-typedef struct {
-    const stage_output *out;
-    const double       *values; /* the candidate's */
-    rounding            stored; /* `given`: how their type rounds, where it is coarser; else 0 */
-    size_t              count, unknown, vacuous, beyond, worst;
-    double              worst_in_bounds;
-} comparison;
-
-static double bound_at(const comparison *c, size_t i)
-{
-    const double b = c->out->bounds[i];
-    return b + given_error(&c->stored, fabs(c->out->values[i]) + b);
-}
-
-static double in_bounds_at(const comparison *c, size_t i)
-{
-    static const double most = 1e300; /* a number that every output can print */
-    const double        mine = c->out->values[i], theirs = c->values[i];
-    const double        bound = bound_at(c, i);
-    if (mine == theirs) {
-        return 0.0;
-    }
-    if (isinf(mine) || isinf(theirs)) {
-        return isinf(bound) ? 0.0 : most;
-    }
-    return bound > 0.0 ? fmin(most, fabs(theirs - mine) / bound) : most;
-}
-
-static void compare(comparison *c)
-{
-    c->count           = c->out->rows * c->out->columns;
-    c->worst_in_bounds = -1.0;
-    for (size_t i = 0; i < c->count; i++) {
-        if (isnan(c->out->bounds[i])) {
-            c->unknown++;
-            continue;
-        }
-        const double x = in_bounds_at(c, i);
-        c->vacuous += bound_at(c, i) >= fabs(c->out->values[i]) && c->out->values[i] != 0.0;
-        c->beyond += x > 1.0;
-        if (x > c->worst_in_bounds) {
-            c->worst_in_bounds = x;
-            c->worst           = i;
-        }
-    }
-}
-
-static double ulps_of(assay_precision precision, double mine, double theirs)
-{
-    static const int digits[] = {11, 24, 53}, least[] = {-14, -126, -1022};
-    int              exponent = 0;
-    if (!isfinite(mine) || !isfinite(theirs)) {
-        return NAN;
-    }
-    frexp(mine, &exponent);
-    exponent = exponent - 1 < least[precision] || mine == 0.0 ? least[precision] : exponent - 1;
-    return fabs(theirs - mine) / ldexp(1.0, exponent - digits[precision] + 1);
-}
-
-/* Numbers that are 0 say nothing of how wide bounds are. */
-static bool is_blind(const comparison *c)
-{
-    size_t sized = 0;
-    for (size_t i = 0; i < c->count; i++) {
-        sized += c->out->values[i] != 0.0 && !isnan(c->out->bounds[i]);
-    }
-    return c->count == 0 || 2 * c->unknown > c->count || (sized > 0 && c->vacuous == sized);
-}
-
-static assay_verdict_kind judge(const comparison *c)
-{
-    return c->beyond > 0 ? ASSAY_VERDICT_FAIL
-           : is_blind(c) ? ASSAY_VERDICT_CANNOT_TELL
-                         : ASSAY_VERDICT_PASS;
-}
-
-static void describe(const comparison *c, assay_verdict_kind kind, char *words, size_t size)
-{
-    words[0] = '\0';
-    if (kind == ASSAY_VERDICT_CANNOT_TELL) {
-        snprintf(words, size, "%s",
-                 c->count == 0               ? "The array is empty."
-                 : 2 * c->unknown > c->count ? "Most of its values have no bound."
-                                             : "All bounds are as large as what they bound: "
-                                               "this precision decides nothing here.");
-    } else if (kind == ASSAY_VERDICT_FAIL) {
-        stage_meaning(c->out->columns, c->count, c->values, c->out->values, words, size);
-    } else if (c->unknown + c->vacuous > 0) {
-        snprintf(words, size,
-                 "Of %zu values %zu have no bound and %zu one that is as large as themselves.",
-                 c->count, c->unknown, c->vacuous);
-    }
-}
-
-static assay_place place_of(const verification *v, const comparison *c)
+static assay_place place_of(const verification *v, const bundle_comparison *c)
 {
     assay_bundle_entry entry = {.name = NULL};
     const size_t       row = c->worst / c->out->columns, column = c->worst % c->out->columns;
@@ -141,25 +46,30 @@ static const char *channel_of(const stage_output *out, size_t column, char *name
     return name;
 }
 
-static assay_status add_finding(const verification *v, const char *stage, const comparison *c)
+static assay_status add_finding(const verification *v, const char *stage,
+                                const bundle_comparison *c)
 {
     char          words[256], channel[16];
     assay_finding f = assay_finding_default();
     f.stage         = stage;
     f.array         = c->out->name;
     f.test          = "rounding";
-    f.kind          = judge(c);
+    f.kind          = bundle_compare_kind(c);
     f.values        = c->count - c->unknown;
-    describe(c, f.kind, words, sizeof words);
+    f.unjudged      = c->unknown;
+    f.vacuous       = c->vacuous;
+    f.width         = c->width;
+    f.width_90      = c->width_90;
+    bundle_compare_describe(c, words, sizeof words);
     f.meaning = words[0] ? words : NULL;
     if (c->worst_in_bounds >= 0.0) {
         f.place     = place_of(v, c);
         f.channel   = channel_of(c->out, c->worst % c->out->columns, channel, sizeof channel);
         f.candidate = c->values[c->worst];
         f.reference = c->out->values[c->worst];
-        f.bound     = bound_at(c, c->worst);
+        f.bound     = bundle_compare_bound(c, c->worst);
         f.in_bounds = c->worst_in_bounds;
-        f.ulps      = ulps_of(v->precision, f.reference, f.candidate);
+        f.ulps      = bundle_compare_ulps(v->precision, f.reference, f.candidate);
     }
     return assay_verdict_add(v->verdict, &f);
 }
@@ -202,14 +112,14 @@ static assay_status judge_array(const verification *v, const stage_run *run,
     }
     status = status ? status : check_finite(v, out, table);
     if (status == ASSAY_OK) {
-        const double stored = stage_roundoff_of(&entry);
-        comparison   c      = {.out = out, .values = assay_array_values(table)};
+        const double      stored = stage_roundoff_of(&entry);
+        bundle_comparison c      = {.out = out, .values = assay_array_values(table)};
         if (stored > stage_rounding_of(v->precision).given) {
             c.stored = (rounding){.given = stored, .given_tiny = stage_tiny_of(&entry)};
         }
-        compare(&c);
+        status = bundle_compare(v->context, &c);
         /* Where nothing is known the array stays among those that were not judged. */
-        if (c.count == 0 || c.unknown < c.count) {
+        if (status == ASSAY_OK && (c.count == 0 || c.unknown < c.count)) {
             status = add_finding(v, run->stage->info.name, &c);
         }
     }
@@ -230,9 +140,19 @@ static bool has_output(const oracle_stage *stage, const assay_bundle_reader *bun
     return false;
 }
 
+/* A stage that ran is named where no number of it has a bound: it has no finding. */
+static assay_status tell_blind(const verification *v, const char *stage)
+{
+    const char *others = assay_verdict_get(v->verdict, "blind");
+    char        names[512];
+    snprintf(names, sizeof names, "%s%s%s", others ? others : "", others ? ", " : "", stage);
+    return assay_verdict_set(v->verdict, "blind", names);
+}
+
 static assay_status judge_stage(const verification *v, const oracle_stage *stage)
 {
     stage_run    run;
+    const int    before = assay_verdict_count(v->verdict);
     assay_status status =
         stage_run_start(&run, v->context, stage, v->candidate, v->scene, &v->precision, 0, NULL);
     for (int i = 0; i < run.out_count && status == ASSAY_OK; i++) {
@@ -241,7 +161,8 @@ static assay_status judge_stage(const verification *v, const oracle_stage *stage
         }
     }
     stage_run_release(&run);
-    return status;
+    return status || assay_verdict_count(v->verdict) > before ? status
+                                                              : tell_blind(v, stage->info.name);
 }
 
 static assay_status judge_stages(const verification *v)
@@ -258,6 +179,8 @@ static assay_status judge_stages(const verification *v)
     if (status == ASSAY_OK && v->reference) {
         status = verify_inputs(v->candidate, v->reference, v->precision, v->verdict);
     }
+    status = status ? status : verify_blame(v->candidate, v->reference, v->verdict);
+    status = status ? status : verify_tell_worth(v->verdict);
     return status ? status : verify_tell_unseen(v->candidate, v->reference, v->verdict);
 }
 

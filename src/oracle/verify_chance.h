@@ -5,7 +5,7 @@
 
 #include "oracle/verify_judge.h"
 
-enum { ASSAY_CHANCE_TEXT = 768 };
+enum { ASSAY_CHANCE_TEXT = ASSAY_MEANING_SIZE + 256 };
 
 /* The share of the reference's samples that a candidate must have taken, at least, for the lack of
  * light to be too much for chance; 0 where there is no lack, or where chance is ruled out. */

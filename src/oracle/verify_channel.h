@@ -3,6 +3,7 @@
 #define ASSAY_ORACLE_VERIFY_CHANNEL_H
 
 #include "assay/verify.h"
+#include "oracle/neighbours.h"
 #include "oracle/noise_model.h"
 #include "oracle/pixel_test.h"
 #include "oracle/tile_sums.h"
@@ -32,6 +33,7 @@ typedef struct {
     double whole_degrees; /* of the whole's variance, where it comes from runs alone; 0 */
     double whole_run_variance;
     assay_pixel_result pixels;
+    assay_neighbours   neighbours; /* of a single candidate; else 0 */
 } assay_verify_channel;
 
 /* Fills channel but for name and stage, from channels of these names and their variances and

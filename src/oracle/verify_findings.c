@@ -93,13 +93,15 @@ assay_status assay_judge_add_whole(assay_judgement *j, int channel, assay_verdic
     const assay_noisy_sums     *sums    = &c->sums.whole;
     const assay_noise           noise   = assay_verify_channel_noise(c, ASSAY_TILE_LEVELS, sums);
     assay_finding               finding = start(c, "whole");
-    finding.values                      = (uint64_t)sums->pixels;
+    char                        words[ASSAY_MEANING_SIZE];
+    finding.values = (uint64_t)sums->pixels;
     fill(&finding, sums, &noise, j->whole.decision.log_bound);
     finding.visible = visible(sums, &noise, &j->whole.critical, &j->power);
     char text[ASSAY_CHANCE_TEXT];
     if (count_rejected(&j->whole, channel, ASSAY_TILE_LEVELS) > 0) {
-        finding.kind    = ASSAY_VERDICT_FAIL;
-        finding.meaning = assay_meaning_of_whole(j, channel);
+        finding.kind = ASSAY_VERDICT_FAIL;
+        assay_meaning_with_neighbours(c, assay_meaning_of_whole(j, channel), words);
+        finding.meaning = words;
         assay_chance_ask(&finding, j, c, sums,
                          assay_chance_share(c, ASSAY_TILE_LEVELS, sums, &j->whole.critical), text);
     }
@@ -173,7 +175,7 @@ assay_status assay_judge_add_tiles(assay_judgement *j, int channel, int level,
     const assay_noise       noise = assay_verify_channel_noise(c, level, sums);
     const uint64_t          bad   = count_rejected(&j->tiles, channel, level);
     double                  share = 0.0;
-    char                    test[16], text[ASSAY_CHANCE_TEXT];
+    char                    test[16], words[ASSAY_MEANING_SIZE], text[ASSAY_CHANCE_TEXT];
     snprintf(test, sizeof test, "tile-%d", c->sums.levels[level].side);
     assay_finding finding = start(c, test);
     finding.values        = c->sums.levels[level].count;
@@ -181,8 +183,10 @@ assay_status assay_judge_add_tiles(assay_judgement *j, int channel, int level,
     fill(&finding, sums, &noise, j->tiles.decision.log_bound);
     finding.visible = summary.visible_median;
     if (bad > 0) {
-        finding.kind    = ASSAY_VERDICT_FAIL;
-        finding.meaning = assay_meaning_of_tile(j, channel, level, bad, sums->difference);
+        finding.kind = ASSAY_VERDICT_FAIL;
+        assay_meaning_with_neighbours(
+            c, assay_meaning_of_tile(j, channel, level, bad, sums->difference), words);
+        finding.meaning                = words;
         const assay_noisy_sums *surest = surest_tile(j, channel, level, &share);
         assay_chance_ask(&finding, j, c, surest, share, text);
     }
@@ -262,8 +266,9 @@ assay_status assay_judge_add_pixels(assay_judgement *j, int channel, assay_verdi
                                : j->pixels.decision.log_bound;
     assay_critical_values critical = assay_critical_values_at(bound);
     assay_finding         finding  = start(c, alone ? "outlier" : "welch");
-    finding.values                 = (uint64_t)c->sums.whole.pixels;
-    finding.place                  = pixel_place(c, pixel);
+    char                  words[ASSAY_MEANING_SIZE];
+    finding.values = (uint64_t)c->sums.whole.pixels;
+    finding.place  = pixel_place(c, pixel);
     fill(&finding, &sums, &noise, bound);
     finding.ulps                   = float_ulps(sums.candidate, sums.reference);
     const assay_noisy_sums usual   = assay_noisy_pixel(&c->pair, c->pixels.typical);
@@ -272,8 +277,10 @@ assay_status assay_judge_add_pixels(assay_judgement *j, int channel, assay_verdi
     if (alone) {
         judge_outlier(&finding);
     } else if (bad > 0) {
-        finding.kind    = ASSAY_VERDICT_FAIL;
-        finding.meaning = assay_meaning_of_pixel(j, channel, bad, sums.difference);
+        finding.kind = ASSAY_VERDICT_FAIL;
+        assay_meaning_with_neighbours(c, assay_meaning_of_pixel(j, channel, bad, sums.difference),
+                                      words);
+        finding.meaning = words;
     }
     assay_status status = assay_verdict_add(verdict, &finding);
     if (status == ASSAY_OK && !alone) {

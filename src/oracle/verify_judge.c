@@ -63,6 +63,9 @@ assay_status assay_judge_channel(assay_judgement *judgement, int channel)
 {
     assay_verify_channel *c      = &judgement->channels[channel];
     assay_status          status = ASSAY_OK;
+    if (c->source != ASSAY_NOISE_RUNS) {
+        c->neighbours = assay_neighbours_of(&c->pair);
+    }
     if (!assay_judge_equivalence(judgement->options)) {
         assay_multiple_tests apart =
             assay_multiple_tests_start(judgement->context, judgement->pixels.tests.level);

@@ -72,4 +72,10 @@ const char *assay_meaning_of_tile(const assay_judgement *judgement, int channel,
 const char *assay_meaning_of_pixel(const assay_judgement *judgement, int channel, uint64_t rejected,
                                    double difference);
 
+enum { ASSAY_MEANING_SIZE = 640 };
+
+/* The meaning of a failure, and a warning where neighbours of a single image share their noise. */
+void assay_meaning_with_neighbours(const assay_verify_channel *channel, const char *meaning,
+                                   char words[ASSAY_MEANING_SIZE]);
+
 #endif

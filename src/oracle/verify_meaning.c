@@ -2,6 +2,8 @@
  *
  * Invariant: a sentence says "could" of what no statistic can prove; it is advice where to look,
  * and decides nothing. */
+#include <stdio.h>
+
 #include "core/numerics.h"
 #include "oracle/verify_judge.h"
 
@@ -119,4 +121,20 @@ const char *assay_meaning_of_pixel(const assay_judgement *judgement, int channel
                               "is too small."
                             : "Pixels are too bright beyond their noise, or the candidate's "
                               "variance is too small.";
+}
+
+void assay_meaning_with_neighbours(const assay_verify_channel *channel, const char *meaning,
+                                   char words[ASSAY_MEANING_SIZE])
+{
+    const assay_neighbours *n = &channel->neighbours;
+    if (assay_neighbours_share_noise(n)) {
+        snprintf(words, ASSAY_MEANING_SIZE,
+                 "%s But signs of the differences agree more often side by side (correlation "
+                 "%.2f) than four pixels apart (%.2f), as where a filter, a denoiser or a cache "
+                 "shares noise among pixels; these tests take that for a bias. Give several runs, "
+                 "or an allowance (--allow).",
+                 meaning, n->near, n->far);
+    } else {
+        snprintf(words, ASSAY_MEANING_SIZE, "%s", meaning);
+    }
 }

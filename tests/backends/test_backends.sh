@@ -130,7 +130,7 @@ workflow_of() { # PAGE
 shell_of backends > "$folder/commands"
 walk "docs/backends.md: its commands"
 grep -q 'normalise .*splat/result.* pass ' "$folder/log" &&
-    grep -q 'First stage that is wrong: weights' "$folder/log"
+    grep -q 'First stage that fails: weights' "$folder/log"
 result $? "docs/backends.md: and they print what it says"
 shell_of ci > "$folder/commands"
 walk "docs/ci.md: its commands"

@@ -72,7 +72,8 @@ cat > "$work/verdict.json" <<'VERDICT'
  "shared_seed":"as it is","not judged":"a/b, <img src=x onerror=hacked=1>","missing":"e/f"},"findings":[
  {"stage":"gbuffer","array":"P","channel":null,"test":"rounding","verdict":"pass","values":9,
   "place":{"row":1,"column":2},"candidate":1,"reference":1,"candidate_hex":null,"reference_hex":null,
-  "effect":null,"bound":1,"in_bounds":0.5,"ulps":1,"p":null,"log_p":null,"visible":null,"meaning":null},
+  "effect":null,"bound":1,"in_bounds":0.5,"ulps":1,"p":null,"log_p":null,"visible":null,"meaning":null,
+  "unjudged":3,"vacuous":0,"width":0.25,"width_90":0.5},
  {"stage":"image","array":"R","channel":null,"test":"tile","verdict":"fail","values":9,
   "place":{"x":3,"y":4,"width":8,"height":8},"candidate":1,"reference":2,
   "candidate_hex":null,"reference_hex":null,"effect":1,"bound":1,"in_bounds":9,"ulps":1,"p":0.001,
@@ -189,6 +190,9 @@ pair|s/return isThis ?/return true ?/
 pass|s/return isThis ?/return false ?/
 pass|s/: null\].filter(Boolean));/: null]);/
 all|s/^  drawConvergence();$//
+pair|s/=> f.unjudged > 0 ? .* : count/=> count/
+pair|s/Number.isFinite(f.width)/false/
+pair|s/^    numeric(format(f.p, 2)),$//
 all|s/<body>/<body><img src="https:\/\/example.org\/x.png" alt="">/
 TABLE
 browse $count

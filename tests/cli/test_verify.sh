@@ -30,7 +30,7 @@ ends() { # NAME CODE WORD ARGUMENT...
 }
 
 ends "the same light passes" 0 "PASS: " verify "$folder/same.exr" $truth
-ends "one bounce fails" 1 "First stage that is wrong: image" \
+ends "one bounce fails" 1 "First stage that fails: image" \
     verify "$folder/dark.exr" $truth --ignore-metadata
 ends "runs pass" 0 "PASS: " verify "$folder/same.exr" "$folder/other.exr" $truth
 ends "runs, said in another way" 0 "PASS: " verify --candidate "$folder/same.exr" \
@@ -84,10 +84,11 @@ for bad in "--level 0" "--level 0.5" "--level x" "--correction bonferroni" "--ti
     refuses "$bad" 2 "${bad%% *}" verify "$folder/same.exr" $truth $bad
 done
 mkdir "$folder/bundle"
-for option in "--allow 0.1" "--detect 0.1" "--channels R" "--reference-exact" "--ignore-metadata"; do
+for option in "--allow 0.1" "--detect-tile 0.1" "--channels R" "--reference-exact" "--ignore-metadata"; do
     refuses "${option%% *} of a bundle" 2 "go with images" verify "$folder/bundle" $option
 done
 refuses "a stage of images" 2 "--require goes with" verify "$folder/same.exr" $truth --require splat
+refuses "a part of images" 2 "--judged goes with" verify "$folder/same.exr" $truth --judged 0.9
 refuses "an image against a bundle" 2 "the reference is a bundle" verify "$folder/same.exr" \
     --reference "$folder/bundle"
 refuses "a bundle against an image" 2 "bundle/manifest.json" verify "$folder/bundle" $truth

@@ -12,11 +12,12 @@
 
 enum { COUNT = 9 };
 
+/* words "": nothing is guessed. */
 static void expect(const double *values, const double *right, const char *words)
 {
     char said[256];
     stage_meaning(COUNT, COUNT, values, right, said, sizeof said);
-    if (!strstr(said, words)) {
+    if (*words ? !strstr(said, words) : *said) {
         fail_msg("'%s' does not say '%s'", said, words);
     }
 }
@@ -36,7 +37,7 @@ static void guesses(void **state)
     expect(negative, right, "wrong sign");
     expect(reversed, right, "first and the third");
     expect(transposed, right, "Vectors of channels");
-    expect(one, right, "1 of 9 values differ");
+    expect(one, right, "");
     (void)state;
 }
 
@@ -48,7 +49,7 @@ static void large_values_hide_nothing(void **state)
     for (int i = 0; i < COUNT; i++) {
         values[i] = i % 3 == 0 ? (double)(float)right[i] : right[i] + 0.25;
     }
-    expect(values, right, "values differ");
+    expect(values, right, "");
     (void)state;
 }
 

@@ -103,7 +103,7 @@ static void first_stage_then_farthest(void **state)
     char *text = NULL;
     assert_int_equal(assay_verdict_paragraph(verdict, &text), ASSAY_OK);
     assert_non_null(strstr(text, "FAIL: c.exr differs from r.exr in 4 of 6 tests."));
-    assert_non_null(strstr(text, "First stage that is wrong: records. b, test welch"));
+    assert_non_null(strstr(text, "First stage that fails: records. b, test welch"));
     assert_null(strchr(text, '\n'));
     assay_text_destroy(*state, text);
     assay_verdict_destroy(verdict);
@@ -160,9 +160,14 @@ static assay_verdict *nasty(assay_context *context)
     f.values        = 6220800;
     f.meaning       = "a %d line\r\nand another, ]]> \xed\xa0\x80";
     add(verdict, &f);
-    f         = finding("records", "records/irradiance", ASSAY_VERDICT_CANNOT_TELL);
-    f.channel = "X";
-    f.place   = assay_place_row(1ull << 40, 2);
+    f          = finding("records", "records/irradiance", ASSAY_VERDICT_CANNOT_TELL);
+    f.channel  = "X";
+    f.place    = assay_place_row(1ull << 40, 2);
+    f.values   = 70;
+    f.unjudged = 30;
+    f.vacuous  = 5;
+    f.width    = 0.25;
+    f.width_90 = INFINITY;
     add(verdict, &f);
     f       = finding("records", "tile", ASSAY_VERDICT_PASS);
     f.place = assay_place_tile(16, 32, 16, 8);
@@ -193,6 +198,12 @@ static void json_follows_its_schema(void **state)
     assert_string_equal(cJSON_GetObjectItem(first, "reference_hex")->valuestring, "inf");
     assert_true(cJSON_IsNull(cJSON_GetObjectItem(first, "reference")));
     assert_true(cJSON_GetObjectItem(first, "log_p")->valuedouble == -1e5);
+    const cJSON *second = cJSON_GetArrayItem(cJSON_GetObjectItem(json, "findings"), 1);
+    assert_true(cJSON_GetObjectItem(second, "unjudged")->valuedouble == 30.0);
+    assert_true(cJSON_GetObjectItem(second, "vacuous")->valuedouble == 5.0);
+    assert_true(cJSON_GetObjectItem(second, "width")->valuedouble == 0.25);
+    assert_true(cJSON_IsNull(cJSON_GetObjectItem(second, "width_90")));
+    assert_true(cJSON_IsNull(cJSON_GetObjectItem(first, "width")));
     assert_int_equal(cJSON_GetObjectItem(json, "exit_code")->valueint, 1);
     /* The schema is no empty form: what is wrong in it is refused. */
     cJSON_ReplaceItemInObject(json, "verdict", cJSON_CreateString("perhaps"));
@@ -271,6 +282,8 @@ static void junit_is_well_formed(void **state)
     assert_non_null(strstr(text, "a&#60;b&#62;&#38;&#34;c&#34;&#39;,:%&#10;??.exr"));
     assert_null(strchr(text, '\x01'));
     assert_null(strstr(text, "skipped"));
+    assert_non_null(strstr(text, "bounds of 0.25 of a typical value (one in ten: inf), of 5 values "
+                                 "as large as they; 70 of 100 values were judged."));
     /* A surrogate in UTF-8 is no character of XML, byte by byte. */
     assert_non_null(strstr(text, "]]&#62; ???\""));
     assay_text_destroy(*state, text);
@@ -284,11 +297,12 @@ static void junit_skips_the_unseen(void **state)
     char          *text    = NULL;
     assert_int_equal(assay_verdict_set(verdict, "not judged", "a<b, c"), ASSAY_OK);
     assert_int_equal(assay_verdict_set(verdict, "missing", "d"), ASSAY_OK);
+    assert_int_equal(assay_verdict_set(verdict, "blind", "visible"), ASSAY_OK);
     assert_int_equal(assay_verdict_junit(verdict, &text), ASSAY_OK);
     assert_int_equal(read_xml(text, "testsuite"), 3);
-    assert_int_equal(read_xml(text, "testcase"), 5);
-    assert_int_equal(read_xml(text, "skipped"), 2);
-    assert_non_null(strstr(text, "tests=\"5\" failures=\"1\" errors=\"1\" skipped=\"2\""));
+    assert_int_equal(read_xml(text, "testcase"), 6);
+    assert_int_equal(read_xml(text, "skipped"), 3);
+    assert_non_null(strstr(text, "tests=\"6\" failures=\"1\" errors=\"1\" skipped=\"3\""));
     assert_non_null(strstr(text, "name=\"not judged\">\n      <skipped message=\"a&#60;b, c\"/>"));
     assert_non_null(strstr(text, "name=\"missing\">\n      <skipped message=\"d\"/>"));
     assay_text_destroy(*state, text);
@@ -331,7 +345,8 @@ static void words(void **state)
 
 static void words_of_a_bound(void **state)
 {
-    static const char *const said[] = {"; 1e+300 times what passes (2)", "; nothing else passes;"};
+    static const char *const said[]   = {"; 1e+300 times what passes (2)",
+                                         "; nothing but the latter passes;"};
     static const double      bounds[] = {2.0, 0.0};
     for (int i = 0; i < 2; i++) {
         assay_verdict *verdict = NULL;

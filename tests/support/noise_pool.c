@@ -118,6 +118,25 @@ noise_pool *noise_pool_made_up(noise_kind kind, int side)
     return pool;
 }
 
+noise_pool *noise_pool_of_rare_light(int side, int rare, bool lit)
+{
+    enum { CORNER = 8, WIDTH = 6 };
+    noise_pool *pool = pool_of(side);
+    for (size_t i = 0; i < (size_t)side * (size_t)side; i++) {
+        assay_random random = assay_random_start(96, ASSAY_STAGE_TEST, i, 0);
+        const int    x = (int)(i % (size_t)side) - CORNER, y = (int)(i / (size_t)side) - CORNER;
+        const bool   pooled = lit && x >= 0 && x < WIDTH && y >= 0 && y < WIDTH;
+        for (size_t s = 0; s < NOISE_POOL_SAMPLES; s++) {
+            const double v =
+                1.0 + 0.2 * normal(&random) + (pooled && s % (size_t)rare == 0 ? 3.0 * rare : 0.0);
+            for (int c = 0; c < 3; c++) {
+                sample_of(pool, i, s)[c] = (float)((1.0 - 0.3 * c) * v);
+            }
+        }
+    }
+    return pool;
+}
+
 noise_pool *noise_pool_batches(const noise_pool *pool, int batch)
 {
     noise_pool *made = pool_of(pool->side);
@@ -235,13 +254,16 @@ static estimate draw_pixel(const drawing *d, size_t pixel, int samples, uint64_t
     return e;
 }
 
-static assay_image *create(assay_context *context, int side, int samples, assay_channel channel[7])
+static const char *const NAMES[] = {"R",          "G",          "B",          "Variance.R",
+                                    "Variance.G", "Variance.B", "SampleCount"};
+
+/* The first `count` channels. */
+static assay_image *create_channels(assay_context *context, int side, int count,
+                                    assay_channel *channel)
 {
-    static const char *const NAMES[] = {"R",          "G",          "B",          "Variance.R",
-                                        "Variance.G", "Variance.B", "SampleCount"};
-    assay_image             *image   = NULL;
-    bool                     ok      = assay_image_create(context, side, side, &image) == ASSAY_OK;
-    for (int c = 0; ok && c < 7; c++) {
+    assay_image *image = NULL;
+    bool         ok    = assay_image_create(context, side, side, &image) == ASSAY_OK;
+    for (int c = 0; ok && c < count; c++) {
         ok = assay_image_add_channel(image, NAMES[c],
                                      c < 6 ? ASSAY_CHANNEL_FLOAT : ASSAY_CHANNEL_UINT,
                                      &channel[c]) == ASSAY_OK;
@@ -250,7 +272,13 @@ static assay_image *create(assay_context *context, int side, int samples, assay_
         assay_image_destroy(image);
         return NULL;
     }
-    for (int i = 0; i < side * side; i++) {
+    return image;
+}
+
+static assay_image *create(assay_context *context, int side, int samples, assay_channel channel[7])
+{
+    assay_image *image = create_channels(context, side, 7, channel);
+    for (int i = 0; image && i < side * side; i++) {
         channel[6].data.u32[i] = (uint32_t)samples;
     }
     return image;
@@ -295,15 +323,27 @@ assay_image *noise_pool_exact(assay_context *context, const noise_pool *pool, in
     return image;
 }
 
+assay_image *noise_pool_uncounted(assay_context *context, assay_image *image)
+{
+    const int     side = assay_image_width(image);
+    assay_channel to[6], from;
+    assay_image  *copy = create_channels(context, side, 6, to);
+    for (int c = 0; copy && c < 6; c++) {
+        require(assay_image_find_channel(image, NAMES[c], &from), NAMES[c]);
+        memcpy(to[c].data.f32, from.data.f32, (size_t)side * (size_t)side * sizeof(float));
+    }
+    assay_image_destroy(image);
+    return copy;
+}
+
 void noise_pool_drop_variance(assay_image *image)
 {
-    static const char *const NAMES[] = {"Variance.R", "Variance.G", "Variance.B", "SampleCount"};
-    const int                pixels  = assay_image_width(image) * assay_image_height(image);
-    assay_channel            channel;
-    for (int c = 0; c < 4; c++) {
+    const int     pixels = assay_image_width(image) * assay_image_height(image);
+    assay_channel channel;
+    for (int c = 3; c < 7; c++) {
         require(assay_image_find_channel(image, NAMES[c], &channel), NAMES[c]);
         for (int i = 0; i < pixels; i++) {
-            if (c < 3) {
+            if (c < 6) {
                 channel.data.f32[i] = 0.0F;
             } else {
                 channel.data.u32[i] = 1;

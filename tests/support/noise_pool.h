@@ -44,6 +44,9 @@ extern const char *const noise_defect_names[DEFECT_COUNT];
 noise_pool *noise_pool_render(assay_context *context, assay_scene *scene, int side,
                               const char *parameter, const char *value);
 noise_pool *noise_pool_made_up(noise_kind kind, int side);
+/* Dull walls, and on 6 x 6 pixels of them a pool of light, three times as bright, that one sample
+ * in `rare` (a power of 2) finds.  lit: false leaves it out, all else is the same. */
+noise_pool *noise_pool_of_rare_light(int side, int rare, bool lit);
 /* Each sample the mean of `batch` of the other pool's: as if each stood for so many. */
 noise_pool *noise_pool_batches(const noise_pool *pool, int batch);
 /* Shifts samples so that each pixel's mean becomes that of the other pool: another estimator of the
@@ -58,6 +61,9 @@ assay_image *noise_pool_draw(assay_context *context, const noise_pool *pool, int
 
 /* Takes an image's variance away: 0, of a single sample. */
 void noise_pool_drop_variance(assay_image *image);
+
+/* The image without its SampleCount, which is destroyed.  NULL without memory. */
+assay_image *noise_pool_uncounted(assay_context *context, assay_image *image);
 
 /* The pool's very means, with the variances of `samples` samples. */
 assay_image *noise_pool_exact(assay_context *context, const noise_pool *pool, int samples);

@@ -237,6 +237,11 @@
     check(said.includes("the verdict is of ") === (verdictOf.candidate === "c"),
       "whose verdict it is is said where it is another's");
     check(all("#findings tbody tr[id]").length > 0, "the stages are listed");
+    const heads = all("#findings thead th").length;
+    check(all("#findings tbody tr[id]").every((row) => row.cells.length === heads), "rows are whole");
+    const first = $("finding-0").textContent;
+    check(first.includes("9 of 12"), "how much was judged");
+    check(first.includes("0.25"), "and how wide the bounds are");
   }
 
   function help() {

@@ -1,7 +1,9 @@
 /* verdict_power.c - the tables of docs/verdicts.md: how often `assay verify` says FAIL of images
  * that are the same light, and of images with a defect that was planted.
  *
- *     verdict_power [NULLS [PLANTED]]     comparisons in all (10000), and of each defect (1000)
+ *     verdict_power [NULLS [PLANTED [RARE]]]     comparisons in all (10000), of each defect (1000),
+ *                                                and of each row on light that is rarely found
+ * (500)
  *
  * Images are drawn from pools of samples (tests/support/noise_pool.h): of our Cornell box, once as
  * path traces it by default and once with light found by scattered rays alone, which is full of
@@ -21,8 +23,10 @@ enum { SIDE = 48, TILE = 8 };
 #define LEVEL 0.01
 
 /* How the candidate's noise is known. */
-typedef enum { OWN, RUNS, ALONE, ALLOWED } way;
-static const char *const WAYS[] = {"own variance", "4 runs", "alone", "allow 0.05"};
+typedef enum { OWN, RUNS, ALONE, ALLOWED, OWN_UNCOUNTED, RUNS_UNCOUNTED } way;
+static const char *const WAYS[] = {
+    "own variance",          "4 runs", "alone", "allow 0.05", "own variance, no SampleCount",
+    "4 runs, no SampleCount"};
 
 typedef struct {
     const noise_pool *candidate, *reference;
@@ -43,10 +47,11 @@ static void require(bool ok, const char *what)
 
 static assay_status compare(void *user, uint64_t index, int worker)
 {
-    experiment                 *e       = user;
-    const assay_context_options options = {.threads = 1};
-    const int                   runs    = e->how == RUNS ? 4 : 1;
-    assay_context              *context = NULL;
+    experiment                 *e         = user;
+    const assay_context_options options   = {.threads = 1};
+    const bool                  uncounted = e->how == OWN_UNCOUNTED || e->how == RUNS_UNCOUNTED;
+    const int                   runs      = e->how == RUNS || e->how == RUNS_UNCOUNTED ? 4 : 1;
+    assay_context              *context   = NULL;
     assay_image                *candidates[4], *reference;
     assay_verdict              *verdict = NULL;
     require(assay_context_create(&options, &context) == ASSAY_OK, "a context");
@@ -56,6 +61,9 @@ static assay_status compare(void *user, uint64_t index, int worker)
             noise_pool_draw(context, e->candidate, e->samples, number + (uint64_t)k, e->defect);
         if (e->how == ALONE || e->how == ALLOWED) {
             noise_pool_drop_variance(candidates[k]);
+        }
+        if (uncounted) {
+            candidates[k] = noise_pool_uncounted(context, candidates[k]);
         }
     }
     reference =
@@ -183,14 +191,63 @@ static void tell_planted(assay_context *context, const pools *p, uint64_t count)
     }
 }
 
-int main(int argc, char **argv)
+/* Light that few samples find: missed by chance, which is no error, and missed altogether. */
+static void tell_rare(assay_context *context, uint64_t count)
 {
-    const uint64_t              nulls   = argc > 1 ? strtoull(argv[1], NULL, 10) : 10000;
-    const uint64_t              planted = argc > 2 ? strtoull(argv[2], NULL, 10) : 1000;
-    const assay_context_options options = {.progress = show, .user = "verdict_power"};
-    assay_context              *context = NULL;
-    assay_scene                *scene   = NULL;
-    require(assay_context_create(&options, &context) == ASSAY_OK, "a context");
+    static const struct {
+        int samples, reference_samples;
+        way how;
+    } rows[] = {{4, 256, OWN},
+                {16, 256, OWN},
+                {64, 256, OWN},
+                {256, 1024, OWN},
+                {4, 256, RUNS},
+                {16, 256, RUNS},
+                {64, 256, RUNS},
+                {4, 256, OWN_UNCOUNTED},
+                {16, 256, OWN_UNCOUNTED},
+                {64, 256, OWN_UNCOUNTED},
+                {4, 256, RUNS_UNCOUNTED},
+                {16, 256, RUNS_UNCOUNTED},
+                {64, 256, RUNS_UNCOUNTED},
+                {4, 256, ALONE},
+                {16, 256, ALONE},
+                {64, 256, ALONE},
+                {256, 1024, ALONE}};
+    enum { ROWS = sizeof rows / sizeof rows[0] };
+    static const int rare[] = {128, 1024};
+    noise_pool      *pools_of[2][2]; /* rarity, and whether the light is missing */
+    printf("\n| candidate's noise | samples | of the reference |");
+    for (int k = 0; k < 2; k++) {
+        pools_of[k][0] = noise_pool_of_rare_light(SIDE, rare[k], true);
+        pools_of[k][1] = noise_pool_of_rare_light(SIDE, rare[k], false);
+        printf(" 1 in %d: same light | without it |", rare[k]);
+    }
+    printf("\n|---|---|---|---|---|---|---|\n");
+    for (int i = 0; i < ROWS; i++) {
+        printf("| %s | %d | %d |", WAYS[rows[i].how], rows[i].samples, rows[i].reference_samples);
+        for (int k = 0; k < 4; k++) {
+            experiment e = {.candidate         = pools_of[k / 2][k % 2],
+                            .reference         = pools_of[k / 2][0],
+                            .samples           = rows[i].samples,
+                            .reference_samples = rows[i].reference_samples,
+                            .how               = rows[i].how,
+                            .first = (uint64_t)(3000 + 4 * rare[k / 2] + 2 * i + k % 2) << 32};
+            run(context, &e, count);
+            printf(" %.1f |", 100.0 * e.failed / (double)count);
+            fflush(stdout);
+        }
+        printf("\n");
+    }
+    for (int k = 0; k < 4; k++) {
+        noise_pool_free(pools_of[k / 2][k % 2]);
+    }
+}
+
+/* What takes renders. */
+static void tell_rendered(assay_context *context, uint64_t nulls, uint64_t planted)
+{
+    assay_scene *scene = NULL;
     require(assay_scene_load(context, "scenes/cornell-box/cornell-box.gltf", NULL, &scene) ==
                 ASSAY_OK,
             assay_context_error(context));
@@ -204,8 +261,12 @@ int main(int argc, char **argv)
     }
     noise_pool_match(p.made[NOISE_ELSEWHERE], p.made[NOISE_GAUSS]);
     noise_pool_match(p.bsdf, p.mis);
-    tell_nulls(context, &p, nulls);
-    tell_planted(context, &p, planted);
+    if (nulls > 0) {
+        tell_nulls(context, &p, nulls);
+    }
+    if (planted > 0) {
+        tell_planted(context, &p, planted);
+    }
     for (int k = 0; k < NOISE_KINDS; k++) {
         noise_pool_free(p.made[k]);
     }
@@ -215,6 +276,22 @@ int main(int argc, char **argv)
     noise_pool_free(p.mis_many);
     noise_pool_free(p.bounces_many);
     assay_scene_destroy(scene);
+}
+
+int main(int argc, char **argv)
+{
+    const uint64_t              nulls   = argc > 1 ? strtoull(argv[1], NULL, 10) : 10000;
+    const uint64_t              planted = argc > 2 ? strtoull(argv[2], NULL, 10) : 1000;
+    const uint64_t              rare    = argc > 3 ? strtoull(argv[3], NULL, 10) : 500;
+    const assay_context_options options = {.progress = show, .user = "verdict_power"};
+    assay_context              *context = NULL;
+    require(assay_context_create(&options, &context) == ASSAY_OK, "a context");
+    if (nulls > 0 || planted > 0) {
+        tell_rendered(context, nulls, planted);
+    }
+    if (rare > 0) {
+        tell_rare(context, rare);
+    }
     assay_context_destroy(context);
     return 0;
 }

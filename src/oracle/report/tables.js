@@ -74,10 +74,18 @@ function placeButton(spot) {
 const STAGE_COLUMNS = [
   ["Verdict"], ["Stage"], ["Array"], ["Test"], ["Values", "number"], ["Worst at"],
   ["Candidate", "number"], ["Reference", "number"], ["Of what passes", "number"], ["p", "number"],
+  ["Bounds, typical", "number"],
 ];
 
 /* Six digits; where there are more to tell, they are shown under the pointer. */
 const exact = (value, hex) => hex ? make("span", { title: hex }, format(value, 6)) : format(value, 6);
+
+/* How many were judged, of how many. */
+const judged = (f) => f.unjudged > 0 ? `${count(f.values)} of ${count(f.values + f.unjudged)}` : count(f.values);
+
+/* How wide bounds are, in parts of what they bound; of one in ten under the pointer. */
+const width = (f) => Number.isFinite(f.width)
+  ? make("span", { title: `one in ten: ${format(f.width_90, 2)}` }, format(f.width, 2)) : "–";
 
 /* A finding's row, and one for what it means; the stage is named where it begins. */
 function findingRows(f, i, { findings, first }) {
@@ -87,12 +95,13 @@ function findingRows(f, i, { findings, first }) {
     cell(begins ? f.stage : "", "stage", "th"),
     cell(f.channel ? `${f.array}, ${f.channel}` : f.array, "code"),
     cell(f.test),
-    numeric(count(f.values)),
+    numeric(judged(f)),
     cell(placeButton(f.place)),
     numeric(exact(f.candidate, f.candidate_hex)),
     numeric(exact(f.reference, f.reference_hex)),
     numeric(f.in_bounds === null ? "–" : `${format(f.in_bounds, 3)} ×`),
-    numeric(format(f.p, 2)));
+    numeric(format(f.p, 2)),
+    numeric(width(f)));
   if (i === first) row.dataset.first = "";
   if (!f.meaning || f.verdict === "pass") return [row];
   const text = make("td", { colSpan: STAGE_COLUMNS.length - 1 }, f.meaning);
