@@ -23,10 +23,14 @@ enum { SIDE = 48, TILE = 8 };
 #define LEVEL 0.01
 
 /* How the candidate's noise is known. */
-typedef enum { OWN, RUNS, ALONE, ALLOWED, OWN_UNCOUNTED, RUNS_UNCOUNTED } way;
-static const char *const WAYS[] = {
-    "own variance",          "4 runs", "alone", "allow 0.05", "own variance, no SampleCount",
-    "4 runs, no SampleCount"};
+typedef enum { OWN, RUNS, ALONE, ALLOWED, OWN_UNCOUNTED, RUNS_UNCOUNTED, ALONE_UNCOUNTED } way;
+static const char *const WAYS[] = {"own variance",
+                                   "4 runs",
+                                   "alone",
+                                   "allow 0.05",
+                                   "own variance, no SampleCount",
+                                   "4 runs, no SampleCount",
+                                   "alone, no SampleCount"};
 
 typedef struct {
     const noise_pool *candidate, *reference;
@@ -49,7 +53,7 @@ static assay_status compare(void *user, uint64_t index, int worker)
 {
     experiment                 *e         = user;
     const assay_context_options options   = {.threads = 1};
-    const bool                  uncounted = e->how == OWN_UNCOUNTED || e->how == RUNS_UNCOUNTED;
+    const bool                  uncounted = e->how >= OWN_UNCOUNTED;
     const int                   runs      = e->how == RUNS || e->how == RUNS_UNCOUNTED ? 4 : 1;
     assay_context              *context   = NULL;
     assay_image                *candidates[4], *reference;
@@ -59,7 +63,7 @@ static assay_status compare(void *user, uint64_t index, int worker)
     for (int k = 0; k < runs; k++) {
         candidates[k] =
             noise_pool_draw(context, e->candidate, e->samples, number + (uint64_t)k, e->defect);
-        if (e->how == ALONE || e->how == ALLOWED) {
+        if (e->how == ALONE || e->how == ALONE_UNCOUNTED || e->how == ALLOWED) {
             noise_pool_drop_variance(candidates[k]);
         }
         if (uncounted) {
@@ -213,7 +217,11 @@ static void tell_rare(assay_context *context, uint64_t count)
                 {4, 256, ALONE},
                 {16, 256, ALONE},
                 {64, 256, ALONE},
-                {256, 1024, ALONE}};
+                {256, 1024, ALONE},
+                {4, 256, ALONE_UNCOUNTED},
+                {16, 256, ALONE_UNCOUNTED},
+                {64, 256, ALONE_UNCOUNTED},
+                {256, 1024, ALONE_UNCOUNTED}};
     enum { ROWS = sizeof rows / sizeof rows[0] };
     static const int rare[] = {128, 1024};
     noise_pool      *pools_of[2][2]; /* rarity, and whether the light is missing */
