@@ -44,9 +44,7 @@ static assay_status compare(void *user, uint64_t index, int worker)
         const uint64_t number = e->first + index * 8 + (uint64_t)k;
         if (k < e->runs) {
             images[k] = noise_pool_draw(context, e->pool, e->samples, number, e->defect);
-            if (e->alone) {
-                noise_pool_drop_variance(images[k]);
-            }
+            images[k] = noise_pool_without(context, images[k], e->alone, false);
         } else if (e->exact) {
             images[k] = noise_pool_exact(context, e->pool, e->reference_samples);
         } else {

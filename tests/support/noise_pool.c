@@ -257,13 +257,11 @@ static estimate draw_pixel(const drawing *d, size_t pixel, int samples, uint64_t
 static const char *const NAMES[] = {"R",          "G",          "B",          "Variance.R",
                                     "Variance.G", "Variance.B", "SampleCount"};
 
-/* The first `count` channels. */
-static assay_image *create_channels(assay_context *context, int side, int count,
-                                    assay_channel *channel)
+static assay_image *create(assay_context *context, int side, int samples, assay_channel channel[7])
 {
     assay_image *image = NULL;
     bool         ok    = assay_image_create(context, side, side, &image) == ASSAY_OK;
-    for (int c = 0; ok && c < count; c++) {
+    for (int c = 0; ok && c < 7; c++) {
         ok = assay_image_add_channel(image, NAMES[c],
                                      c < 6 ? ASSAY_CHANNEL_FLOAT : ASSAY_CHANNEL_UINT,
                                      &channel[c]) == ASSAY_OK;
@@ -272,13 +270,7 @@ static assay_image *create_channels(assay_context *context, int side, int count,
         assay_image_destroy(image);
         return NULL;
     }
-    return image;
-}
-
-static assay_image *create(assay_context *context, int side, int samples, assay_channel channel[7])
-{
-    assay_image *image = create_channels(context, side, 7, channel);
-    for (int i = 0; image && i < side * side; i++) {
+    for (int i = 0; i < side * side; i++) {
         channel[6].data.u32[i] = (uint32_t)samples;
     }
     return image;
@@ -323,31 +315,32 @@ assay_image *noise_pool_exact(assay_context *context, const noise_pool *pool, in
     return image;
 }
 
-assay_image *noise_pool_uncounted(assay_context *context, assay_image *image)
+static bool copy_channel(const assay_image *from, assay_image *to, int channel)
 {
-    const int     side = assay_image_width(image);
-    assay_channel to[6], from;
-    assay_image  *copy = create_channels(context, side, 6, to);
-    for (int c = 0; copy && c < 6; c++) {
-        require(assay_image_find_channel(image, NAMES[c], &from), NAMES[c]);
-        memcpy(to[c].data.f32, from.data.f32, (size_t)side * (size_t)side * sizeof(float));
+    const size_t  size = (size_t)assay_image_width(from) * (size_t)assay_image_height(from) * 4;
+    assay_channel source, target;
+    require(assay_image_find_channel(from, NAMES[channel], &source), NAMES[channel]);
+    if (assay_image_add_channel(to, NAMES[channel], source.type, &target) != ASSAY_OK) {
+        return false;
     }
-    assay_image_destroy(image);
-    return copy;
+    memcpy(target.data.u32, source.data.u32, size);
+    return true;
 }
 
-void noise_pool_drop_variance(assay_image *image)
+assay_image *noise_pool_without(assay_context *context, assay_image *image, bool variance,
+                                bool count)
 {
-    const int     pixels = assay_image_width(image) * assay_image_height(image);
-    assay_channel channel;
-    for (int c = 3; c < 7; c++) {
-        require(assay_image_find_channel(image, NAMES[c], &channel), NAMES[c]);
-        for (int i = 0; i < pixels; i++) {
-            if (c < 6) {
-                channel.data.f32[i] = 0.0F;
-            } else {
-                channel.data.u32[i] = 1;
-            }
-        }
+    const int    side = assay_image_width(image);
+    assay_image *copy = NULL;
+    bool         ok   = assay_image_create(context, side, side, &copy) == ASSAY_OK;
+    for (int c = 0; c < 7 && ok; c++) {
+        const bool is_dropped = c < 3 ? false : c < 6 ? variance : count;
+        ok                    = is_dropped || copy_channel(image, copy, c);
     }
+    assay_image_destroy(image);
+    if (!ok) {
+        assay_image_destroy(copy);
+        return NULL;
+    }
+    return copy;
 }

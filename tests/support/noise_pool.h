@@ -59,11 +59,10 @@ void noise_pool_free(noise_pool *pool);
 assay_image *noise_pool_draw(assay_context *context, const noise_pool *pool, int samples,
                              uint64_t number, noise_defect defect);
 
-/* Takes an image's variance away: 0, of a single sample. */
-void noise_pool_drop_variance(assay_image *image);
-
-/* The image without its SampleCount, which is destroyed.  NULL without memory. */
-assay_image *noise_pool_uncounted(assay_context *context, assay_image *image);
+/* The image, which is destroyed, without its variance, or its number of samples.  NULL without
+ * memory. */
+assay_image *noise_pool_without(assay_context *context, assay_image *image, bool variance,
+                                bool count);
 
 /* The pool's very means, with the variances of `samples` samples. */
 assay_image *noise_pool_exact(assay_context *context, const noise_pool *pool, int samples);

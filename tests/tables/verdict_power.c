@@ -54,21 +54,18 @@ static assay_status compare(void *user, uint64_t index, int worker)
     experiment                 *e         = user;
     const assay_context_options options   = {.threads = 1};
     const bool                  uncounted = e->how >= OWN_UNCOUNTED;
-    const int                   runs      = e->how == RUNS || e->how == RUNS_UNCOUNTED ? 4 : 1;
-    assay_context              *context   = NULL;
-    assay_image                *candidates[4], *reference;
-    assay_verdict              *verdict = NULL;
+    const bool     bare    = e->how == ALONE || e->how == ALONE_UNCOUNTED || e->how == ALLOWED;
+    const int      runs    = e->how == RUNS || e->how == RUNS_UNCOUNTED ? 4 : 1;
+    assay_context *context = NULL;
+    assay_image   *candidates[4], *reference;
+    assay_verdict *verdict = NULL;
     require(assay_context_create(&options, &context) == ASSAY_OK, "a context");
     const uint64_t number = e->first + index * 8;
     for (int k = 0; k < runs; k++) {
         candidates[k] =
             noise_pool_draw(context, e->candidate, e->samples, number + (uint64_t)k, e->defect);
-        if (e->how == ALONE || e->how == ALONE_UNCOUNTED || e->how == ALLOWED) {
-            noise_pool_drop_variance(candidates[k]);
-        }
-        if (uncounted) {
-            candidates[k] = noise_pool_uncounted(context, candidates[k]);
-        }
+        candidates[k] = noise_pool_without(context, candidates[k], bare, uncounted);
+        require(candidates[k] != NULL, "an image");
     }
     reference =
         noise_pool_draw(context, e->reference, e->reference_samples, number + 7, DEFECT_NONE);
