@@ -10,6 +10,8 @@
 
 static const double UNIT_TOLERANCE = 1e-6;
 
+static bool is_none(assay_vec3 v) { return isnan(v.x) && isnan(v.y) && isnan(v.z); }
+
 assay_status stage_unit_vectors(stage_run *run, int input, size_t column, assay_vec3 **vectors_out)
 {
     const stage_table *t       = &run->in[input];
@@ -22,7 +24,7 @@ assay_status stage_unit_vectors(stage_run *run, int input, size_t column, assay_
     }
     for (size_t i = 0; i < t->rows; i++) {
         v[i]              = stage_vec3(t->values + i * t->columns + column);
-        const double away = fabs(vec3_length(v[i]) - 1.0);
+        const double away = is_none(v[i]) ? 0.0 : fabs(vec3_length(v[i]) - 1.0);
         if (!(away <= allowed)) {
             assay_release(run->context, v);
             stage_fail_value(run, input, i, column, "a vector that is not of unit length");
@@ -35,6 +37,29 @@ assay_status stage_unit_vectors(stage_run *run, int input, size_t column, assay_
     }
     run->rounding.given += moved * (1.0 + run->rounding.given);
     *vectors_out = v;
+    return ASSAY_OK;
+}
+
+assay_status stage_query_points(stage_run *run, int position, int normal, assay_vec3 **normals_out)
+{
+    const stage_table *p       = &run->in[position];
+    assay_vec3        *normals = NULL;
+    if (run->in[normal].rows != p->rows) {
+        return stage_fail_rows(run, normal, p->rows, "one a point, as of query/position");
+    }
+    assay_status status = stage_unit_vectors(run, normal, 0, &normals);
+    for (size_t i = 0; i < p->rows && status == ASSAY_OK; i++) {
+        const assay_vec3 at = stage_vec3(p->values + 3 * i);
+        if (is_none(at) != is_none(normals[i]) || !(is_none(at) || vec3_finite(at))) {
+            status = stage_fail_value(run, position, i, 0,
+                                      "a point must have a position and a normal, or NaN for both");
+        }
+    }
+    if (status != ASSAY_OK) {
+        assay_release(run->context, normals);
+        return status;
+    }
+    *normals_out = normals;
     return ASSAY_OK;
 }
 

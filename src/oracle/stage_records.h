@@ -63,6 +63,12 @@ enum {
     {"clamp_negative", ASSAY_PARAM_BOOL, "", "on", 0, 0, NULL,                                     \
      "What is extrapolated below 0 counts as 0.",                                                  \
      "ours"}
+/* Where a cache is asked, for stage_query_points. */
+#define STAGE_QUERY_ARRAYS \
+    {"query/position", "m", "X Y Z", "point", "where it is asked; NaN where nothing is", \
+     false, true, false}, \
+    {"query/normal", "", "X Y Z", "point", "unit normal there; NaN likewise", false, true, false}
+
 /* Of the stages that splat: what a pixel shows. */
 #define STAGE_PIXEL_ARRAYS \
     {"splat/position", "m", "X Y Z", "pixel", "its point; NaN where there is none", \
@@ -89,9 +95,14 @@ void         stage_records_close(stage_records *records);
 /* A store of them, with their rules.  Errors: MEMORY, LIMIT. */
 assay_status stage_records_store(const stage_records *records, assay_record_store **store_out);
 
-/* Unit vectors of an input, 3 columns from `column` on; those that were stored with few digits are
- * brought to unit length, and run->rounding says what that was.  Errors: DOMAIN, MEMORY. */
+/* Unit vectors of an input, 3 columns from `column` on (NaN where the input may have none); those
+ * that were stored with few digits are brought to unit length, and run->rounding says what that
+ * was.  Errors: DOMAIN, MEMORY. */
 assay_status stage_unit_vectors(stage_run *run, int input, size_t column, assay_vec3 **vectors_out);
+
+/* Normals of the points that are asked, from two inputs of as many rows; where nothing is asked
+ * position and normal are NaN.  Errors: FORMAT, DOMAIN, MEMORY. */
+assay_status stage_query_points(stage_run *run, int position, int normal, assay_vec3 **normals_out);
 
 /* An octree of what may contribute at points with these coordinates, for a at least that of the
  * rules.  Errors: MEMORY, LIMIT. */
