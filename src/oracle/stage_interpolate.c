@@ -142,7 +142,7 @@ static assay_status ask_all(stage_run *run, stage_records *records)
     const size_t points  = run->in[QUERY_POSITION].rows;
     assay_vec3  *normals = NULL;
     job_data     job     = {.run = run, .records = records};
-    assay_status status  = stage_query_points(run, QUERY_POSITION, QUERY_NORMAL, &normals);
+    assay_status status  = stage_query_points(run, QUERY_POSITION, QUERY_NORMAL, 0, &normals);
     status               = status ? status : stage_records_store(records, &job.store);
     status               = status ? status : make_room(run, &job);
     if (status == ASSAY_OK && run->bounded) {

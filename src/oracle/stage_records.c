@@ -40,14 +40,15 @@ assay_status stage_unit_vectors(stage_run *run, int input, size_t column, assay_
     return ASSAY_OK;
 }
 
-assay_status stage_query_points(stage_run *run, int position, int normal, assay_vec3 **normals_out)
+assay_status stage_query_points(stage_run *run, int position, int normal, size_t column,
+                                assay_vec3 **normals_out)
 {
     const stage_table *p       = &run->in[position];
     assay_vec3        *normals = NULL;
     if (run->in[normal].rows != p->rows) {
-        return stage_fail_rows(run, normal, p->rows, "one a point, as of query/position");
+        return stage_fail_rows(run, normal, p->rows, "one a point, as of its positions");
     }
-    assay_status status = stage_unit_vectors(run, normal, 0, &normals);
+    assay_status status = stage_unit_vectors(run, normal, column, &normals);
     for (size_t i = 0; i < p->rows && status == ASSAY_OK; i++) {
         const assay_vec3 at = stage_vec3(p->values + 3 * i);
         if (is_none(at) != is_none(normals[i]) || !(is_none(at) || vec3_finite(at))) {
@@ -60,6 +61,39 @@ assay_status stage_query_points(stage_run *run, int position, int normal, assay_
         return status;
     }
     *normals_out = normals;
+    return ASSAY_OK;
+}
+
+static assay_status take_frames(stage_run *run, int input, const assay_vec3 *x, const assay_vec3 *y,
+                                const assay_vec3 *z, assay_frame3 *frames)
+{
+    const double allowed = fmax(UNIT_TOLERANCE, 8.0 * run->in[input].roundoff);
+    for (size_t i = 0; i < run->in[input].rows; i++) {
+        const assay_vec3 along = vec3_sub(vec3_cross(x[i], y[i]), z[i]);
+        if (!is_none(z[i]) && !(vec3_length(along) <= allowed)) {
+            return stage_fail_value(run, input, i, 0, "not a right-handed orthonormal frame");
+        }
+        frames[i] = (assay_frame3){x[i], y[i], z[i]};
+    }
+    return ASSAY_OK;
+}
+
+assay_status stage_query_frames(stage_run *run, int input, const assay_vec3 *normals,
+                                assay_frame3 **frames_out)
+{
+    assay_vec3   *x = NULL, *y = NULL;
+    assay_frame3 *frames = assay_allocate(run->context, run->in[input].rows, sizeof *frames);
+    assay_status  status =
+        frames ? stage_unit_vectors(run, input, 0, &x) : assay_fail_memory(run->context, "frames");
+    status = status ? status : stage_unit_vectors(run, input, 3, &y);
+    status = status ? status : take_frames(run, input, x, y, normals, frames);
+    assay_release(run->context, x);
+    assay_release(run->context, y);
+    if (status != ASSAY_OK) {
+        assay_release(run->context, frames);
+        return status;
+    }
+    *frames_out = frames;
     return ASSAY_OK;
 }
 
@@ -139,6 +173,7 @@ assay_status stage_records_open(stage_run *run, bool said, stage_records *record
 {
     stage_records made    = {.context = run->context,
                              .rules   = rules_of(run->params, said),
+                             .said    = said,
                              .count   = run->in[RECORDS_POSITION].rows};
     assay_vec3   *normals = NULL;
     assay_status  status  = check_rows(run, said);

@@ -2,6 +2,7 @@
 #ifndef ASSAY_ORACLE_STAGE_RECORDS_H
 #define ASSAY_ORACLE_STAGE_RECORDS_H
 
+#include "math/frame.h"
 #include "math/octree.h"
 #include "oracle/record_bound.h"
 #include "oracle/stage.h"
@@ -81,6 +82,7 @@ enum {
 typedef struct {
     assay_context     *context;
     assay_record_rules rules;
+    bool               said; /* with light */
     size_t             count;
     assay_record      *records;
     bool               exact;      /* equal numbers are equal to the candidate (record_bound.h)   */
@@ -100,9 +102,15 @@ assay_status stage_records_store(const stage_records *records, assay_record_stor
  * was.  Errors: DOMAIN, MEMORY. */
 assay_status stage_unit_vectors(stage_run *run, int input, size_t column, assay_vec3 **vectors_out);
 
-/* Normals of the points that are asked, from two inputs of as many rows; where nothing is asked
- * position and normal are NaN.  Errors: FORMAT, DOMAIN, MEMORY. */
-assay_status stage_query_points(stage_run *run, int position, int normal, assay_vec3 **normals_out);
+/* Normals of the points that are asked, from two inputs of as many rows, 3 columns from `column`
+ * on; where nothing is asked position and normal are NaN.  Errors: FORMAT, DOMAIN, MEMORY. */
+assay_status stage_query_points(stage_run *run, int position, int normal, size_t column,
+                                assay_vec3 **normals_out);
+
+/* Right-handed orthonormal frames of an input, 9 columns from the first on, likewise; z is
+ * normals[i] of stage_query_points.  Errors: DOMAIN, MEMORY. */
+assay_status stage_query_frames(stage_run *run, int input, const assay_vec3 *normals,
+                                assay_frame3 **frames_out);
 
 /* An octree of what may contribute at points with these coordinates, for a at least that of the
  * rules.  Errors: MEMORY, LIMIT. */

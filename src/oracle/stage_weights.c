@@ -91,7 +91,7 @@ static assay_status weigh_all(stage_run *run, stage_records *records)
         return stage_fail_rows(run, QUERY_RECORD, points, "one a point, as of query/position");
     }
     assay_status status = check_pairs(run, records->count);
-    status = status ? status : stage_query_points(run, QUERY_POSITION, QUERY_NORMAL, &normals);
+    status = status ? status : stage_query_points(run, QUERY_POSITION, QUERY_NORMAL, 0, &normals);
     records->exact       = run->rounding.given <= run->rounding.u;
     const size_t columns = run->in[QUERY_RECORD].values || records->count == 0 ? 1 : records->count;
     status      = status ? status : stage_output_make(run, 0, 0, points, columns, &job.out);
