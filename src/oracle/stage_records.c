@@ -64,6 +64,45 @@ assay_status stage_query_points(stage_run *run, int position, int normal, size_t
     return ASSAY_OK;
 }
 
+static assay_status take_normals(stage_run *run, int position, int frame, assay_vec3 *normals)
+{
+    const stage_table *p = &run->in[position], *f = &run->in[frame];
+    const double       allowed = fmax(UNIT_TOLERANCE, 4.0 * f->roundoff);
+    for (size_t i = 0; i < p->rows; i++) {
+        const assay_vec3 at = stage_vec3(p->values + 3 * i);
+        if (isnan(at.x)) {
+            continue;
+        }
+        normals[i] = stage_vec3(f->values + 9 * i + 6);
+        if (!vec3_finite(at)) {
+            return stage_fail_value(run, position, i, 0, "not a position");
+        }
+        if (!(fabs(vec3_length(normals[i]) - 1.0) <= allowed)) {
+            return stage_fail_value(run, frame, i, 6, "a vector that is not of unit length");
+        }
+    }
+    return ASSAY_OK;
+}
+
+assay_status stage_pixel_normals(stage_run *run, int position, int frame, assay_vec3 **normals_out)
+{
+    const size_t pixels = run->in[position].rows;
+    if (run->in[frame].rows != pixels) {
+        return stage_fail_rows(run, frame, pixels, "one a pixel, as of its positions");
+    }
+    assay_vec3 *normals = assay_allocate(run->context, pixels, sizeof *normals);
+    if (!normals) {
+        return assay_fail_memory(run->context, "a G-buffer");
+    }
+    const assay_status status = take_normals(run, position, frame, normals);
+    if (status != ASSAY_OK) {
+        assay_release(run->context, normals);
+        return status;
+    }
+    *normals_out = normals;
+    return ASSAY_OK;
+}
+
 static assay_status take_frames(stage_run *run, int input, const assay_vec3 *x, const assay_vec3 *y,
                                 const assay_vec3 *z, assay_frame3 *frames)
 {

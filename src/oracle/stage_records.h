@@ -107,6 +107,10 @@ assay_status stage_unit_vectors(stage_run *run, int input, size_t column, assay_
 assay_status stage_query_points(stage_run *run, int position, int normal, size_t column,
                                 assay_vec3 **normals_out);
 
+/* Of the stages that splat: the z of the frames, as given, of pixels that have a position.  Errors:
+ * FORMAT, DOMAIN, MEMORY. */
+assay_status stage_pixel_normals(stage_run *run, int position, int frame, assay_vec3 **normals_out);
+
 /* Right-handed orthonormal frames of an input, 9 columns from the first on, likewise; z is
  * normals[i] of stage_query_points.  Errors: DOMAIN, MEMORY. */
 assay_status stage_query_frames(stage_run *run, int input, const assay_vec3 *normals,
