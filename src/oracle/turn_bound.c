@@ -300,7 +300,9 @@ static turn_angles find_angles(const rounding *r, const tracked_frame *from,
     turn_angles   a    = {0};
     find_tilt(r, sine, r8, most, &a);
     const bool   tilted = sine.v > LEAST * r->u;
-    const double own    = (tilted ? off_by(FRAME * r->u, sine.v) : 0.0) + our_own(sine.v);
+    const bool   may    = tracked_high(sine) > LEAST * r->u;
+    const double own    = our_own(sine.v) +
+                       (may ? off_by(FRAME * r->u, fmax(tracked_low(sine), LEAST * r->u)) : 0.0);
     a.alpha             = tilted ? off_by(hypotenuse(r2.e, r5.e), sine.v) : INFINITY;
     a.gamma             = tilted ? off_by(hypotenuse(r6.e, r7.e), sine.v) : INFINITY;
     const double skip   = fmax(sqrt(SKIP * r->u), 1.1 * OWN_SKIP) + sine.e;

@@ -17,6 +17,7 @@
 #include "assay/basis.h"
 #include "core/numerics.h"
 #include "math/frame.h"
+#include "oracle/turn_bound.h"
 #include "support/measure.h"
 #include "support/random_places.h"
 #include "support/splat_room.h"
@@ -380,7 +381,7 @@ static double few_mean(candidate *c, size_t count, const double *weights, const 
     return count ? few(&c->f, top / few_sum(&c->f, count, terms)) : 0.0;
 }
 
-static void few_ask(candidate *c, size_t i, double out[ROW], double *sum_out)
+static size_t few_ask(candidate *c, size_t i, double out[ROW], double *sum_out)
 {
     static double said[RECORDS][ROW];
     double        weights[RECORDS], terms[RECORDS], values[RECORDS], here[9], frame[9];
@@ -410,6 +411,7 @@ static void few_ask(candidate *c, size_t i, double out[ROW], double *sum_out)
             out[k + l * l]           = last;
         }
     }
+    return count;
 }
 
 /* A threshold of a candidate's own, from the least to the largest. */
@@ -424,8 +426,9 @@ static void choose(candidate *c, int precision, defect planted, turning way, boo
 
 /* ---- asking ---- */
 
+/* alone: of points where one record counts, so that no weight is in the answer. */
 static bound_use use_coefficients(const data *d, candidate *c, assay_precision precision,
-                                  bound_use *sums)
+                                  bound_use *sums, bound_use *alone)
 {
     stage_case s   = stage_case_begin(c->context);
     bound_use  use = {0};
@@ -438,11 +441,14 @@ static bound_use use_coefficients(const data *d, candidate *c, assay_precision p
     const stage_output *sum  = stage_case_output(&s, "radiance_query/weight_sum");
     assert_int_equal(mean->columns, ROW);
     for (size_t i = 0; i < POINTS; i++) {
-        double out[ROW], weight = 0.0;
-        few_ask(c, i, out, &weight);
+        double       out[ROW], weight = 0.0;
+        const size_t count = few_ask(c, i, out, &weight);
         bound_use_add(sums, weight, sum->values[i], sum->bounds[i]);
         for (size_t k = 0; k < ROW; k++) {
             bound_use_add(&use, out[k], mean->values[ROW * i + k], mean->bounds[ROW * i + k]);
+            if (count == 1) {
+                bound_use_add(alone, out[k], mean->values[ROW * i + k], mean->bounds[ROW * i + k]);
+            }
         }
     }
     stage_case_end(&s);
@@ -455,24 +461,28 @@ static void test_interpolate_radiance(void **state)
     candidate c;
     open_candidate(&c, *state, d);
     for (int p = ASSAY_PRECISION_HALF; p <= ASSAY_PRECISION_DOUBLE; p++) {
-        double most = 0.0;
+        bound_use alone = {0};
+        double    most  = 0.0;
         for (int way = 0; way < 2 * WAYS; way++) {
             bound_use sums = {0};
             choose(&c, p, RIGHT, (turning)(way / 2), way % 2);
-            const bound_use right = use_coefficients(d, &c, (assay_precision)p, &sums);
+            c.exact               = p == ASSAY_PRECISION_FLOAT && way == 1;
+            const bound_use right = use_coefficients(d, &c, (assay_precision)p, &sums, &alone);
             assert_int_equal(right.beyond, 0);
             assert_int_equal(sums.beyond, 0);
             most = fmax(most, right.most);
         }
-        print_message("interpolate-radiance, %d digits: %.3f of the bound\n", DIGITS[p], most);
-        assert_true(p == ASSAY_PRECISION_DOUBLE || most > 0.03);
+        print_message("interpolate-radiance, %d digits: %.3f of the bound, one record %.3f\n",
+                      DIGITS[p], most, alone.most);
+        assert_true(p == ASSAY_PRECISION_DOUBLE || (most > 0.03 && alone.most > 0.03));
     }
     static const defect wrong[] = {FLIPPED, NOT_LOCAL, NOT_TURNED, INVERSE, OTHER_FRAME,
                                    SWAPPED, MIRRORED,  LOST,       LARGER_R};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        bound_use sums = {0};
+        bound_use sums = {0}, alone = {0};
         choose(&c, ASSAY_PRECISION_FLOAT, wrong[i], BY_SINES, false);
-        const bound_use bad = use_coefficients(d, &c, ASSAY_PRECISION_FLOAT, &sums);
+        c.exact             = false;
+        const bound_use bad = use_coefficients(d, &c, ASSAY_PRECISION_FLOAT, &sums, &alone);
         print_message("  defect %d: %.3g times the bound, %zu values\n", wrong[i], bad.most,
                       bad.beyond);
         assert_true(bad.most > 50.0);
@@ -481,11 +491,355 @@ static void test_interpolate_radiance(void **state)
     free(d);
 }
 
+/* ---- turns by themselves ---- */
+
+/* As a stage reads what was stored with few digits. */
+static assay_vec3 stored(const few_digits *given, assay_vec3 n)
+{
+    const assay_vec3 rounded = vec3(few(given, n.x), few(given, n.y), few(given, n.z));
+    return given->digits == 53 ? n : vec3_normalize(rounded);
+}
+
+/* Normals were stored with fewer digits than the candidate computes with, or with as many. */
+static bound_use use_turns(candidate *c, const rounding *r, const few_digits *given)
+{
+    enum { PAIRS = ORDER * (ORDER + 1) / 2 };
+    const assay_radiance_turn_settings settings = {
+        .way      = c->exact ? ASSAY_HSH_EXACT : ASSAY_HSH_TABLE,
+        .steps    = STEPS,
+        .tilt_max = c->nodes[STEPS]};
+    assay_radiance_turn *turn  = NULL;
+    turn_bound          *bound = NULL;
+    bound_use            use   = {0};
+    assay_random         random = assay_random_start(31, ASSAY_STAGE_TEST, 3, 0);
+    assert_int_equal(assay_radiance_turn_create(c->context, c->hsh, &settings, 1, &turn), ASSAY_OK);
+    assert_int_equal(turn_bound_create(c->context, c->hsh, turn, &settings, &bound), ASSAY_OK);
+    for (size_t i = 0; i < 400; i++) {
+        const assay_vec3 a = random_unit(&random), b = tilted(a, i, &random);
+        const assay_vec3 n = stored(given, a), m = stored(given, b);
+        const assay_frame3  from = frame3_from_z(n), to = frame3_from_z(m);
+        const tracked_frame near = tracked_frame_from_z(r, n), far = tracked_frame_from_z(r, m);
+        double there[9], here[9], ours[ROW], theirs[ROW], scratch[2 * (PAIRS + PAIRS * PAIRS)];
+        double before[3 * PAIRS], after[3 * PAIRS], errors[3 * PAIRS] = {0.0}, away[3 * PAIRS];
+        for (size_t k = 0; k < ROW; k++) {
+            ours[k]   = few(&c->f, random_in(&random, -1.0, 1.0));
+            theirs[k] = ours[k];
+        }
+        for (size_t k = 0; k < 3; k++) {
+            turn_bound_sizes(bound, ours + k * COUNT, before + k * PAIRS);
+        }
+        few_frame(&c->f, &a.x, there);
+        few_frame(&c->f, &b.x, here);
+        few_turn(c, there, here, theirs);
+        assert_int_equal(assay_radiance_turn_apply(turn, 0, &from, &to, ours), ASSAY_OK);
+        for (size_t k = 0; k < 3; k++) {
+            turn_bound_sizes(bound, ours + k * COUNT, after + k * PAIRS);
+        }
+        assert_int_equal(
+            turn_bound_turn(bound, r, &near, &far, false, before, after, errors, scratch),
+            ASSAY_OK);
+        for (size_t k = 0; k < ROW; k++) {
+            theirs[k] -= ours[k];
+        }
+        for (size_t k = 0; k < 3; k++) {
+            turn_bound_sizes(bound, theirs + k * COUNT, away + k * PAIRS);
+        }
+        for (size_t k = 0; k < (size_t)3 * PAIRS; k++) {
+            bound_use_add(&use, away[k], 0.0, errors[k]);
+        }
+    }
+    turn_bound_destroy(bound);
+    assay_radiance_turn_destroy(turn);
+    return use;
+}
+
+static void test_turns(void **state)
+{
+    candidate c;
+    open_candidate(&c, *state, NULL);
+    for (int p = ASSAY_PRECISION_HALF; p <= ASSAY_PRECISION_DOUBLE; p++) {
+        for (int stored = 0; stored <= p; stored++) {
+            bound_use most = {0};
+            for (int way = 0; way < 4 * WAYS; way++) {
+                choose(&c, p, RIGHT, (turning)(way / 4), way % 2);
+                c.exact                = way % 4 > 1;
+                const few_digits given = {.digits = DIGITS[stored]};
+                rounding         r     = stage_rounding_of((assay_precision)p);
+                r.given = fmax(r.given, (stored < p ? 2.0 : 1.0) * ldexp(1.0, -DIGITS[stored]));
+                const bound_use use    = use_turns(&c, &r, &given);
+                most.most              = fmax(most.most, use.most);
+                most.beyond += use.beyond;
+            }
+            print_message("turns, %d digits of %d given: %.3f of the bound\n", DIGITS[p],
+                          DIGITS[stored], most.most);
+            assert_int_equal(most.beyond, 0);
+            assert_true(p == ASSAY_PRECISION_DOUBLE || most.most > (stored < p ? 0.003 : 0.03));
+        }
+    }
+    close_candidate(&c);
+}
+
+/* ---- splatting ---- */
+
+/* Coefficients of f cos, in the frame of the BRDF. */
+static void few_brdf(candidate *c, size_t i, double row[ROW])
+{
+    const few_digits *f    = &c->f;
+    const double     *wo   = c->d->brdf + 15 * i + 9;
+    const double      down = few(f, 1.0 + few(f, wo[2]));
+    double            share[2];
+    size_t            first[2];
+    for (int k = 0; k < 2; k++) {
+        const double u = few(f, 0.5 + few(f, 0.5 * few(f, few(f, wo[k]) / down)));
+        const double t = fmin(fmax(few(f, few(f, u * GRID) - 0.5), 0.0), GRID - 1.0);
+        first[k]       = t < GRID - 1.0 ? (size_t)t : GRID - 2;
+        share[k]       = few(f, t - (double)first[k]);
+    }
+    for (size_t n = 0; n < ROW; n++) {
+        const double base = c->defect == NO_BASE ? 1.0 : few(f, c->d->brdf[15 * i + 12 + n / COUNT]);
+        double       looked[2];
+        for (size_t k = 0; k < 2; k++) {
+            const size_t lobe = (size_t)c->d->lobe[LOBES * i + (k ? 1 + n / COUNT : 0)];
+            double       terms[4];
+            for (size_t j = 0; j < 4; j++) {
+                const size_t x = first[0] + j % 2, y = first[1] + j / 2;
+                const size_t at = c->defect == TRANSPOSED ? x * GRID + y : y * GRID + x;
+                const double w  = few(f, (j % 2 ? share[0] : few(f, 1.0 - share[0])) *
+                                             (j / 2 ? share[1] : few(f, 1.0 - share[1])));
+                terms[j] = few(f, w * few(f, c->d->grids[(lobe * TEXELS + at) * COUNT + n % COUNT]));
+            }
+            looked[k] = few_sum(&c->f, 4, terms);
+        }
+        row[n] = few(f, looked[1] + few(f, base * looked[0]));
+    }
+}
+
+/* The light comes to the BRDF, or the BRDF to the light. */
+static void few_reflected(candidate *c, size_t i, bool light_turns, double out[3])
+{
+    static double said[RECORDS][ROW];
+    double        weights[RECORDS], brdf[ROW], here[9], frame[9], reflected[3][RECORDS];
+    const double *n     = c->d->brdf + 15 * i + 6;
+    const size_t  count = few_terms(c, c->d->at + 3 * i, n, weights, said);
+    few_brdf(c, i, brdf);
+    few_frame(&c->f, n, here);
+    for (size_t k = 0; k < 9; k++) {
+        frame[k] = few(&c->f, c->d->brdf[15 * i + k]);
+    }
+    c->threshold += 1.0; /* one z */
+    if (!light_turns && c->defect != OTHER_FRAME) {
+        few_turn(c, frame, here, brdf);
+    }
+    for (size_t k = 0; k < count; k++) {
+        if (light_turns && c->defect != OTHER_FRAME) {
+            few_turn(c, here, frame, said[k]);
+        }
+        for (size_t j = 0; j < 3; j++) {
+            const size_t light = c->defect == SWAPPED ? 2 - j : j;
+            reflected[j][k] = few_dot(&c->f, COUNT, said[k] + light * COUNT, brdf + j * COUNT);
+        }
+    }
+    c->threshold -= 1.0;
+    for (size_t j = 0; j < 3; j++) {
+        out[j] = few(&c->f, few(&c->f, c->d->weight[i]) * few_mean(c, count, weights, reflected[j]));
+    }
+}
+
+static void add_pixels(const stage_case *s, const data *d, const double *ends)
+{
+    stage_case_text(s, "assay:method", "splat");
+    stage_case_table(s, "splat_glossy/position", "m", POINTS, 3, d->at);
+    stage_case_table(s, "splat_glossy/batch_end", "records", 3, 1, ends);
+    stage_case_table(s, "splat_glossy/frame", "", POINTS, 9, d->frame);
+    stage_case_table(s, "splat_glossy/brdf", "", POINTS, 15, d->brdf);
+    stage_case_table(s, "splat_glossy/lobe", "", POINTS, LOBES, d->lobe);
+    stage_case_table(s, "splat_glossy/lobe_grid", "1/sr", (size_t)LOBES * TEXELS, COUNT, d->grids);
+    stage_case_table(s, "splat_glossy/batch.2/weight", "", POINTS, 1, d->weight);
+}
+
+static bound_use use_light(const data *d, candidate *c, assay_precision precision, double last)
+{
+    const double ends[] = {0.0, 10.0, last};
+    stage_case   s      = stage_case_begin(c->context);
+    bound_use    use    = {0};
+    add_records(&s, d);
+    add_pixels(&s, d, ends);
+    stage_case_run(&s, "splat-glossy-light", precision);
+    const stage_output *sum = stage_case_output(&s, "splat_glossy/batch.2/radiance");
+    for (size_t i = 0; i < POINTS; i++) {
+        double out[3];
+        few_reflected(c, i, i % 3 == 0, out);
+        for (size_t k = 0; k < 3; k++) {
+            bound_use_add(&use, out[k], sum->values[3 * i + k], sum->bounds[3 * i + k]);
+        }
+    }
+    stage_case_end(&s);
+    return use;
+}
+
+static void test_splat_glossy_light(void **state)
+{
+    data     *d = make_data();
+    candidate c;
+    open_candidate(&c, *state, d);
+    for (int p = ASSAY_PRECISION_HALF; p <= ASSAY_PRECISION_DOUBLE; p++) {
+        double most = 0.0;
+        for (int way = 0; way < WAYS; way++) {
+            choose(&c, p, RIGHT, (turning)way, way % 2);
+            const bound_use right = use_light(d, &c, (assay_precision)p, RECORDS);
+            assert_int_equal(right.beyond, 0);
+            most = fmax(most, right.most);
+        }
+        print_message("splat-glossy-light, %d digits: %.3f of the bound\n", DIGITS[p], most);
+        assert_true(p == ASSAY_PRECISION_DOUBLE || most > 0.01);
+    }
+    static const defect wrong[] = {FLIPPED, NOT_LOCAL, NOT_TURNED, INVERSE,    OTHER_FRAME,
+                                   SWAPPED, LOST,      LARGER_R,   TRANSPOSED, NO_BASE};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        choose(&c, ASSAY_PRECISION_FLOAT, wrong[i], BY_SINES, false);
+        const bound_use bad = use_light(d, &c, ASSAY_PRECISION_FLOAT, RECORDS);
+        print_message("  defect %d: %.3g times the bound, %zu values\n", wrong[i], bad.most,
+                      bad.beyond);
+        assert_true(bad.most > 50.0);
+    }
+    /* Records beyond the last batch are not heard, and no bound is wider for them. */
+    choose(&c, ASSAY_PRECISION_FLOAT, RIGHT, BY_SINES, false);
+    assert_true(use_light(d, &c, ASSAY_PRECISION_FLOAT, RECORDS - 20).most > 50.0);
+    close_candidate(&c);
+    free(d);
+}
+
+/* Weights up to record 45, a batch later up to 70. */
+static bound_use use_sums(const data *d, candidate *c, assay_precision precision, const char *variant)
+{
+    const double ends[] = {20.0, 45.0, 70.0};
+    const size_t last   = c->defect == LOST ? 69 : 70;
+    stage_case   s      = stage_case_begin(c->context);
+    bound_use    use    = {0};
+    add_records(&s, d);
+    add_pixels(&s, d, ends);
+    stage_case_text(&s, "variant", variant);
+    stage_case_run(&s, "splat-glossy", precision);
+    assert_int_equal(s.run.out_count, 3);
+    for (size_t i = 0; i < POINTS; i++) {
+        double       terms[2 * RECORDS];
+        size_t       count = 0;
+        const double before[3] = {0.0, 20.0, 45.0};
+        for (size_t b = 0; b < 3; b++) {
+            char name[64];
+            snprintf(name, sizeof name, "splat_glossy/batch.%zu/weight", b);
+            const stage_output *sum = stage_case_output(&s, name);
+            for (size_t k = (size_t)before[b]; k < (b == 2 ? last : (size_t)ends[b]); k++) {
+                terms[count++] = few_weight(c, d->at + 3 * i, d->frame + 9 * i + 6, k);
+            }
+            for (size_t k = 0; b == 2 && *variant == 'p' && k < 20; k++) {
+                terms[count++] = few_weight(c, d->at + 3 * i, d->frame + 9 * i + 6, k);
+            }
+            bound_use_add(&use, few_sum(&c->f, count, terms), sum->values[i], sum->bounds[i]);
+        }
+    }
+    stage_case_end(&s);
+    return use;
+}
+
+static void test_splat_glossy(void **state)
+{
+    data     *d = make_data();
+    candidate c;
+    open_candidate(&c, *state, d);
+    for (int p = ASSAY_PRECISION_HALF; p <= ASSAY_PRECISION_DOUBLE; p++) {
+        choose(&c, p, RIGHT, BY_SINES, false);
+        const bound_use right     = use_sums(d, &c, (assay_precision)p, "corrected");
+        const bound_use published = use_sums(d, &c, (assay_precision)p, "published");
+        print_message("splat-glossy, %d digits: %.3f of the bound\n", DIGITS[p], right.most);
+        assert_int_equal(right.beyond + published.beyond, 0);
+        assert_true(p == ASSAY_PRECISION_DOUBLE || right.most > 0.03);
+    }
+    static const defect wrong[] = {LARGER_R, LOST};
+    for (size_t i = 0; i < 2; i++) {
+        choose(&c, ASSAY_PRECISION_FLOAT, wrong[i], BY_SINES, false);
+        const bound_use bad = use_sums(d, &c, ASSAY_PRECISION_FLOAT, "corrected");
+        print_message("  defect %d: %.3g times the bound\n", wrong[i], bad.most);
+        assert_true(bad.most > 50.0);
+    }
+    close_candidate(&c);
+    free(d);
+}
+
+/* ---- HSH by angles ---- */
+
+static bound_use use_angles(candidate *c, int precision, double sign, bool whole)
+{
+    const double alpha = 0.3, beta = 1.1, gamma = -2.0;
+    double       in[2 * ROW], matrix[COUNT * COUNT];
+    bound_use    use = {0};
+    stage_case   s   = stage_case_begin(c->context);
+    for (size_t i = 0; i < (size_t)2 * ROW; i++) {
+        in[i] = random_in(&c->f.random, -1.0, 1.0);
+    }
+    stage_case_text(&s, "basis", "hsh");
+    stage_case_text(&s, "order", "4");
+    stage_case_text(&s, "alpha", "0.3");
+    stage_case_text(&s, "beta", "1.1");
+    stage_case_text(&s, "gamma", "-2");
+    stage_case_table(&s, "rotate/in", "W/(m2 sr)", 6, COUNT, in);
+    stage_case_run(&s, "rotate", (assay_precision)precision);
+    const stage_output *out = stage_case_output(&s, "rotate/out");
+    const few_digits   *f   = &c->f;
+    for (size_t i = 0; i < 2; i++) {
+        double       row[ROW];
+        const double a = few(f, alpha), b = few(f, beta), g = few(f, gamma);
+        for (size_t k = 0; k < ROW; k++) {
+            row[k] = few(f, in[ROW * i + k]);
+        }
+        few_matrix(c, sign * b, matrix);
+        if (whole) {
+            one_matrix(c, few(f, assay_cos(a)), few(f, assay_sin(a)), few(f, assay_cos(g)),
+                       few(f, assay_sin(g)), sign * b, row);
+        } else {
+            few_spin(f, few(f, assay_cos(g)), few(f, assay_sin(g)), row);
+            few_multiply(c, matrix, row);
+            few_spin(f, few(f, assay_cos(a)), few(f, assay_sin(a)), row);
+        }
+        for (size_t k = 0; k < ROW; k++) {
+            bound_use_add(&use, row[k], out->values[ROW * i + k], out->bounds[ROW * i + k]);
+        }
+    }
+    stage_case_end(&s);
+    return use;
+}
+
+static void test_angles(void **state)
+{
+    candidate c;
+    open_candidate(&c, *state, NULL);
+    for (int p = ASSAY_PRECISION_HALF; p <= ASSAY_PRECISION_DOUBLE; p++) {
+        choose(&c, p, RIGHT, BY_ANGLES, false);
+        c.exact               = true;
+        const bound_use parts = use_angles(&c, p, 1.0, false), whole = use_angles(&c, p, 1.0, true);
+        print_message("rotate, hsh, %d digits: %.3f, %.3f of the bound\n", DIGITS[p], parts.most,
+                      whole.most);
+        assert_int_equal(parts.beyond + whole.beyond, 0);
+        assert_true(p == ASSAY_PRECISION_DOUBLE || parts.most > 5e-4);
+    }
+    choose(&c, ASSAY_PRECISION_FLOAT, RIGHT, BY_ANGLES, false);
+    c.exact             = true;
+    const bound_use bad = use_angles(&c, ASSAY_PRECISION_FLOAT, -1.0, false);
+    print_message("  inverse: %.3g times the bound\n", bad.most);
+    assert_true(bad.most > 100.0);
+    close_candidate(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_turns, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_interpolate_radiance, context_set_up,
                                         context_tear_down),
+        cmocka_unit_test_setup_teardown(test_splat_glossy_light, context_set_up,
+                                        context_tear_down),
+        cmocka_unit_test_setup_teardown(test_splat_glossy, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_angles, context_set_up, context_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
