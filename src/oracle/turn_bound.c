@@ -301,13 +301,13 @@ static turn_angles find_angles(const rounding *r, const tracked_frame *from,
     find_tilt(r, sine, r8, most, &a);
     const bool   tilted = sine.v > LEAST * r->u;
     const bool   may    = tracked_high(sine) > LEAST * r->u;
-    const double own    = our_own(sine.v) +
-                       (may ? off_by(FRAME * r->u, fmax(tracked_low(sine), LEAST * r->u)) : 0.0);
-    a.alpha             = tilted ? off_by(hypotenuse(r2.e, r5.e), sine.v) : INFINITY;
-    a.gamma             = tilted ? off_by(hypotenuse(r6.e, r7.e), sine.v) : INFINITY;
-    const double skip   = fmax(sqrt(SKIP * r->u), 1.1 * OWN_SKIP) + sine.e;
-    const double bent   = 1.0 - assay_cos(a.high);
-    const double sum    = off_by(hypotenuse(r0.e, r3.e), hypotenuse(r0.v, r3.v)) + 2.0 * own +
+    const double own =
+        our_own(sine.v) + (may ? off_by(FRAME * r->u, fmax(tracked_low(sine), LEAST * r->u)) : 0.0);
+    a.alpha           = tilted ? off_by(hypotenuse(r2.e, r5.e), sine.v) : INFINITY;
+    a.gamma           = tilted ? off_by(hypotenuse(r6.e, r7.e), sine.v) : INFINITY;
+    const double skip = fmax(sqrt(SKIP * r->u), 1.1 * OWN_SKIP) + sine.e;
+    const double bent = 1.0 - assay_cos(a.high);
+    const double sum  = off_by(hypotenuse(r0.e, r3.e), hypotenuse(r0.v, r3.v)) + 2.0 * own +
                        (a.high < 1.0 ? 2.0 * bent : ASSAY_PI);
     if (sine.v <= skip && r8.v > 0.0) {
         a.low = 0.0; /* it may be left out */
