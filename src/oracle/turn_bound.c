@@ -20,8 +20,8 @@
  * Angles.  alpha and gamma are directions of vectors as long as the sine s of the tilt: off by
  * e / (s - e).  Where s is small, they are ill-conditioned, but not so their sum: a tilt below
  * LEAST u may be taken for none by whoever computes with u, and then only the sum is used, which
- * (r0, r3) give to (1 - cos beta).  Both ways are bounds, and the smaller error of angles chooses.
- * Up to SKIP the turn about y may be left out: the cosine is 1 there within rounding. */
+ * (r0, r3) give to (1 - cos beta).  Both ways are bounds; the one whose angles are off by less is
+ * taken. Up to SKIP the turn about y may be left out: the cosine is 1 there within rounding. */
 #include "oracle/turn_bound.h"
 
 #include <string.h>
@@ -314,7 +314,7 @@ static turn_angles find_angles(const rounding *r, const tracked_frame *from,
         a.alpha += bent;
     }
     a.off = fmax(a.tilt - a.low, a.high - a.tilt);
-    if (sum < a.alpha + a.gamma && r8.v > 0.0) {
+    if (r8.v > 0.0 && sum + a.tilt + a.high < a.alpha + a.gamma + a.off) {
         /* Compared by way of no tilt at all. */
         a.alpha = sum;
         a.gamma = 0.0;

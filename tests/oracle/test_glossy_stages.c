@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "core/numerics.h"
+#include "oracle/lobe_bound.h"
 #include "support/measure.h"
 #include "support/radiance_candidate.h"
 #include "support/random_places.h"
@@ -53,6 +54,51 @@ static void few_brdf(radiance_candidate *c, size_t i, double row[ROW])
         }
         row[n] = few(f, looked[1] + few(f, base * looked[0]));
     }
+}
+
+/* Lookups by themselves. */
+static void test_lobes(void **state)
+{
+    enum { PAIRS = ORDER * (ORDER + 1) / 2 };
+    const assay_radiance_turn_settings exact = {.way = ASSAY_HSH_EXACT};
+    radiance_data                     *d     = radiance_data_make();
+    turn_bound                        *bound = NULL;
+    lobe_grids                         grids = {0};
+    radiance_candidate                 c;
+    radiance_candidate_open(&c, *state, d);
+    assert_int_equal(turn_bound_create(*state, c.hsh, NULL, &exact, &bound), ASSAY_OK);
+    assert_int_equal(lobe_grids_open(*state, GRID, COUNT, LOBES, d->grids, &grids), ASSAY_OK);
+    for (int p = ASSAY_PRECISION_HALF; p <= ASSAY_PRECISION_DOUBLE; p++) {
+        const rounding r   = stage_rounding_of((assay_precision)p);
+        bound_use      use = {0};
+        radiance_candidate_choose(&c, p, RIGHT, BY_SINES, false);
+        for (size_t i = 0; i < POINTS; i++) {
+            const double    *b = d->brdf + 15 * i, *n = d->lobe + LOBES * i;
+            const lobe_pixel pixel = {.slope      = (size_t)n[0],
+                                      .black      = {(size_t)n[1], (size_t)n[2], (size_t)n[3]},
+                                      .wo         = vec3(b[9], b[10], b[11]),
+                                      .base_color = rgb(b[12], b[13], b[14])};
+            double           ours[ROW], theirs[ROW], scratch[COUNT], away[PAIRS];
+            double           sizes[3 * PAIRS], errors[3 * PAIRS];
+            few_brdf(&c, i, theirs);
+            assert_int_equal(lobe_look_up(&grids, &pixel, scratch, ours), ASSAY_OK);
+            lobe_bound(&grids, bound, &r, &pixel, sizes, errors);
+            for (size_t k = 0; k < ROW; k++) {
+                ours[k] -= theirs[k];
+            }
+            for (size_t k = 0; k < (size_t)3 * PAIRS; k++) {
+                turn_bound_sizes(bound, ours + k / PAIRS * COUNT, away);
+                bound_use_add(&use, away[k % PAIRS], 0.0, errors[k]);
+            }
+        }
+        print_message("lobes, %d digits: %.3f of the bound\n", DIGITS[p], use.most);
+        assert_int_equal(use.beyond, 0);
+        assert_true(p == ASSAY_PRECISION_DOUBLE || use.most > 0.1);
+    }
+    lobe_grids_close(&grids);
+    turn_bound_destroy(bound);
+    radiance_candidate_close(&c);
+    free(d);
 }
 
 /* The light comes to the BRDF, or the BRDF to the light. */
@@ -213,6 +259,7 @@ static void test_splat_glossy(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_lobes, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_splat_glossy_light, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_splat_glossy, context_set_up, context_tear_down),
     };

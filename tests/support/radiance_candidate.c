@@ -20,7 +20,8 @@ static const int    DIGITS[] = {11, 24, 53};
  * precision sees. */
 assay_vec3 tilted(assay_vec3 n, size_t i, assay_random *random)
 {
-    static const double sizes[] = {0.0, 1e-12, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1};
+    static const double sizes[] = {0.0,  1e-12, 1e-8,    1e-7, 1e-6, 1e-5,
+                                   1e-4, 1e-3,  1.35e-3, 1e-2, 0.1};
     const assay_vec3    side    = random_unit(random);
     return vec3_normalize(vec3_mad(n, sizes[i % (sizeof sizes / sizeof sizes[0])], side));
 }
@@ -41,13 +42,11 @@ static void make_records(radiance_data *d, assay_random *random)
     }
 }
 
-/* Smooth, as lobes are. */
-static void make_grids(radiance_data *d)
+/* So rough that it counts where a direction falls. */
+static void make_grids(radiance_data *d, assay_random *random)
 {
     for (size_t i = 0; i < (size_t)LOBES * TEXELS * COUNT; i++) {
-        const size_t texel = i / COUNT % TEXELS, lobe = i / COUNT / TEXELS;
-        const double x = (double)(texel % GRID) / GRID, y = (double)texel / TEXELS;
-        d->grids[i] = assay_cos((double)(i % COUNT) + 2.0 * x - 1.3 * y + (double)lobe);
+        d->grids[i] = random_in(random, -1.0, 1.0);
     }
 }
 
@@ -60,7 +59,7 @@ radiance_data *radiance_data_make(void)
     assert_non_null(d);
     d->count = POINTS;
     make_records(d, &random);
-    make_grids(d);
+    make_grids(d, &random);
     for (size_t i = 0; i < POINTS; i++) {
         assay_vec3 p = vec3(0.5, 0.25, 0.0), n = vec3(0.0, 0.0, 1.0);
         splat_room_point(&camera, SIDE, SIDE, i, &p, &n);
@@ -94,7 +93,7 @@ void radiance_data_add(const stage_case *c, const radiance_data *d)
     stage_case_text(c, "a", "0.6");
     stage_case_text(c, "order", "4");
     stage_case_text(c, "rotation_steps", "8");
-    stage_case_text(c, "grid", "6");
+    stage_case_text(c, "grid", "40");
     stage_case_table(c, "radiance_records/position", "m", RECORDS, 3, d->position);
     stage_case_table(c, "radiance_records/normal", "", RECORDS, 3, d->normal);
     stage_case_table(c, "radiance_records/radius", "m", RECORDS, 1, d->radius);

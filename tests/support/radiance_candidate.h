@@ -13,7 +13,7 @@
 #include <string.h>
 
 enum { RECORDS = 90, SIDE = 11, POINTS = SIDE * SIDE, ORDER = 4, COUNT = ORDER * ORDER };
-enum { ROW = 3 * COUNT, STEPS = 8, LOBES = 4, GRID = 6, TEXELS = GRID * GRID };
+enum { ROW = 3 * COUNT, STEPS = 8, LOBES = 4, GRID = 40, TEXELS = GRID * GRID };
 
 typedef struct {
     double position[3 * RECORDS], normal[3 * RECORDS], radius[RECORDS];
