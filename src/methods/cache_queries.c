@@ -180,10 +180,10 @@ static assay_status ask_radiance(void *user, uint64_t row, int worker)
     put_row(job, R_FRAME, row, FRAME_COLUMNS, &frame);
     if (status == ASSAY_OK && found->count > 0) {
         put_row(job, R_WEIGHT, row, 1, &found->weight);
-        status = assay_radiance_rows_mean(&job->rows, job->store, found, p, &frame, worker,
-                                          job->scratch + (size_t)worker * 2 * job->rows.count,
-                                          assay_array_data(job->tables[R_COEFFICIENTS]) +
-                                              row * job->rows.count);
+        status = assay_radiance_rows_mean(
+            &job->rows, assay_record_store_at(job->store, 0), found, p, &frame, worker,
+            job->scratch + (size_t)worker * 2 * job->rows.count,
+            assay_array_data(job->tables[R_COEFFICIENTS]) + row * job->rows.count);
     }
     return status;
 }

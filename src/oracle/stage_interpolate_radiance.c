@@ -74,9 +74,9 @@ static assay_status hear_parts(const job_data *job, int worker, size_t i)
     for (size_t k = 0; k < parts->count && status == ASSAY_OK; k++) {
         const uint32_t number = parts->numbers[k];
         status = radiance_said_bound(radiance->bound, &job->run->rounding, radiance->records.exact,
-                                     &radiance->rows, &radiance->records.records[number], number,
+                                     &radiance->rows, &radiance->turned[number], number,
                                      stage_vec3(job->run->in[QUERY_POSITION].values + 3 * i),
-                                     job->normals[i], worker, hearing);
+                                     job->frames[i].z, worker, hearing);
         memcpy(own->said + k * row, hearing->said, row * sizeof(double));
         memcpy(own->errors + k * pairs, hearing->errors, pairs * sizeof(double));
     }
@@ -136,7 +136,7 @@ static assay_status bound_point(const job_data *job, int worker, size_t i)
     for (size_t c = 0; c < CHANNELS; c++) {
         turn_bound_sizes(radiance->bound, own->mean + c * count, own->sizes + c * pairs);
     }
-    const tracked_frame here  = tracked_frame_from_z(r, job->normals[i]);
+    const tracked_frame here  = tracked_frame_from_z(r, job->frames[i].z);
     const tracked_frame asked = tracked_frame_given(r, &job->frames[i]);
     turn_bound_spin(radiance->bound, r, &here, &asked, own->sizes, own->off);
     for (size_t k = 0; k < row; k++) {
@@ -158,12 +158,12 @@ static assay_status ask_point(void *user, uint64_t i, int worker)
     if (isnan(p.x)) {
         return ASSAY_OK;
     }
-    const assay_frame3 here = frame3_from_z(job->normals[i]);
+    const assay_frame3 here = frame3_from_z(job->frames[i].z);
     assay_status       status =
         assay_record_store_find(job->radiance.store, p, job->normals[i], UINT32_MAX, &own->found);
     memset(own->mean, 0, rows->count * sizeof *own->mean);
     if (status == ASSAY_OK && own->found.count > 0) {
-        status = assay_radiance_rows_mean(rows, job->radiance.store, &own->found, p, &here, worker,
+        status = assay_radiance_rows_mean(rows, job->radiance.turned, &own->found, p, &here, worker,
                                           own->scratch, own->mean);
         memcpy(row, own->mean, rows->count * sizeof *row);
         status =
@@ -228,12 +228,12 @@ static assay_status run_interpolate_radiance(stage_run *run)
     const size_t points = run->in[QUERY_POSITION].rows;
     job_data     job    = {.run = run};
     assay_status status = stage_query_points(run, QUERY_POSITION, QUERY_FRAME, 6, &job.normals);
-    status = status ? status : stage_query_frames(run, QUERY_FRAME, job.normals, &job.frames);
-    status = status ? status
-                    : stage_radiance_open(run, false, points, run->in[QUERY_POSITION].values,
-                                          &job.radiance);
-    status = status ? status : make_outputs(run, &job);
-    status = status ? status : make_desks(run, &job);
+    status              = status ? status : stage_query_frames(run, QUERY_FRAME, &job.frames);
+    status              = status ? status
+                                 : stage_radiance_open(run, false, points, run->in[QUERY_POSITION].values,
+                                                       &job.radiance);
+    status              = status ? status : make_outputs(run, &job);
+    status              = status ? status : make_desks(run, &job);
     status = status ? status : assay_parallel_for(run->context, NULL, points, ask_point, &job);
     close_job(run, &job);
     return status == ASSAY_ERR_MEMORY ? assay_fail_memory(run->context, "a look into a cache")

@@ -5,7 +5,8 @@
 #include "core/alloc.h"
 #include "core/context.h"
 
-static const double UNIT_TOLERANCE = 1e-6;
+/* Farther from unit length nothing is one; nearer than that double itself is. */
+static const double UNIT_TOLERANCE = 1e-6, UNIT_EXACT = 1e-14;
 
 static bool is_none(assay_vec3 v) { return isnan(v.x) && isnan(v.y) && isnan(v.z); }
 
@@ -100,34 +101,44 @@ assay_status stage_pixel_normals(stage_run *run, int position, int frame, assay_
     return ASSAY_OK;
 }
 
-static assay_status take_frames(stage_run *run, int input, const assay_vec3 *x, const assay_vec3 *y,
-                                const assay_vec3 *z, assay_frame3 *frames)
+/* The frame about a unit normal that is nearest to x. */
+static assay_frame3 about(assay_vec3 z, assay_vec3 x)
 {
-    const double allowed = fmax(UNIT_TOLERANCE, 8.0 * run->in[input].roundoff);
-    for (size_t i = 0; i < run->in[input].rows; i++) {
-        const assay_vec3 along = vec3_sub(vec3_cross(x[i], y[i]), z[i]);
-        if (!is_none(z[i]) && !(vec3_length(along) <= allowed)) {
-            return stage_fail_value(run, input, i, 0, "not a right-handed orthonormal frame");
-        }
-        frames[i] = (assay_frame3){x[i], y[i], z[i]};
-    }
-    return ASSAY_OK;
+    const assay_vec3 flat = vec3_normalize(vec3_mad(x, -vec3_dot(x, z), z));
+    return (assay_frame3){flat, vec3_cross(z, flat), z};
 }
 
-assay_status stage_query_frames(stage_run *run, int input, const assay_vec3 *normals,
-                                assay_frame3 **frames_out)
+static bool is_exact(const assay_frame3 *f)
 {
-    assay_vec3   *x = NULL, *y = NULL;
-    assay_frame3 *frames = assay_allocate(run->context, run->in[input].rows, sizeof *frames);
-    assay_status  status =
-        frames ? stage_unit_vectors(run, input, 0, &x) : assay_fail_memory(run->context, "frames");
-    status = status ? status : stage_unit_vectors(run, input, 3, &y);
-    status = status ? status : take_frames(run, input, x, y, normals, frames);
-    assay_release(run->context, x);
-    assay_release(run->context, y);
-    if (status != ASSAY_OK) {
-        assay_release(run->context, frames);
-        return status;
+    return fabs(vec3_length(f->z) - 1.0) <= UNIT_EXACT &&
+           vec3_length(vec3_sub(vec3_cross(f->x, f->y), f->z)) <= UNIT_EXACT &&
+           fabs(vec3_dot(f->x, f->z)) <= UNIT_EXACT;
+}
+
+assay_vec3 stage_unit_normal(assay_vec3 n)
+{
+    return fabs(vec3_length(n) - 1.0) <= UNIT_EXACT ? n : vec3_normalize(n);
+}
+
+assay_status stage_query_frames(stage_run *run, int input, assay_frame3 **frames_out)
+{
+    const stage_table *t       = &run->in[input];
+    const double       allowed = fmax(UNIT_TOLERANCE, 8.0 * t->roundoff);
+    assay_frame3      *frames  = assay_allocate(run->context, t->rows, sizeof *frames);
+    if (!frames) {
+        return assay_fail_memory(run->context, "frames");
+    }
+    for (size_t i = 0; i < t->rows; i++) {
+        const double      *row   = t->values + i * t->columns;
+        const assay_frame3 given = {stage_vec3(row), stage_vec3(row + 3), stage_vec3(row + 6)};
+        const assay_frame3 exact = about(stage_unit_normal(given.z), given.x);
+        frames[i]                = is_exact(&given) ? given : exact;
+        if (!is_none(given.z) && !(vec3_length(vec3_sub(given.x, exact.x)) <= allowed &&
+                                   vec3_length(vec3_sub(given.y, exact.y)) <= allowed &&
+                                   vec3_length(vec3_sub(given.z, exact.z)) <= allowed)) {
+            assay_release(run->context, frames);
+            return stage_fail_value(run, input, i, 0, "not a right-handed orthonormal frame");
+        }
     }
     *frames_out = frames;
     return ASSAY_OK;

@@ -19,10 +19,13 @@ assay_status stage_query_points(stage_run *run, int position, int normal, size_t
  * FORMAT, DOMAIN, MEMORY. */
 assay_status stage_pixel_normals(stage_run *run, int position, int frame, assay_vec3 **normals_out);
 
-/* Right-handed orthonormal frames of an input, 9 columns from the first on, likewise; z is
- * normals[i] of stage_query_points.  Errors: DOMAIN, MEMORY. */
-assay_status stage_query_frames(stage_run *run, int input, const assay_vec3 *normals,
-                                assay_frame3 **frames_out);
+/* Frames of an input, 9 columns from the first on, made orthonormal in double: what was stored with
+ * few digits is so to these digits alone, and a turn between frames divides by the sine of its
+ * tilt. NaN where there is none.  Errors: DOMAIN (neither), MEMORY. */
+assay_status stage_query_frames(stage_run *run, int input, assay_frame3 **frames_out);
+
+/* Likewise a normal. */
+assay_vec3 stage_unit_normal(assay_vec3 n);
 
 static inline assay_vec3 stage_vec3(const double *row) { return vec3(row[0], row[1], row[2]); }
 

@@ -69,6 +69,20 @@ static assay_status open_rows(stage_run *run, stage_radiance *radiance,
     return status;
 }
 
+static assay_status take_turned(const stage_run *run, stage_radiance *radiance)
+{
+    const size_t count = radiance->records.count;
+    radiance->turned   = assay_allocate(run->context, count, sizeof *radiance->turned);
+    if (!radiance->turned) {
+        return assay_fail_memory(run->context, "records");
+    }
+    for (size_t i = 0; i < count; i++) {
+        radiance->turned[i]        = radiance->records.records[i];
+        radiance->turned[i].normal = stage_unit_normal(radiance->turned[i].normal);
+    }
+    return ASSAY_OK;
+}
+
 static assay_status open_bounds(const stage_run *run, stage_radiance *radiance,
                                 const assay_radiance_turn_settings *turning)
 {
@@ -103,6 +117,7 @@ assay_status stage_radiance_open(stage_run *run, bool splatted, size_t count, co
         radiance->records.rules.a = last;
     }
     status = stage_records_store(&radiance->records, &radiance->store);
+    status = status ? status : take_turned(run, radiance);
     status = status ? status : open_rows(run, radiance, &turning);
     if (status || !run->bounded || !turn_bound_covers(turning.way)) {
         return status;
@@ -122,6 +137,7 @@ void stage_radiance_close(stage_radiance *radiance)
         record_parts_release(context, &radiance->parts[i]);
     }
     if (context) {
+        assay_release(context, radiance->turned);
         assay_release(context, radiance->desks);
         assay_release(context, radiance->walks);
         assay_release(context, radiance->parts);

@@ -43,8 +43,9 @@ enum { RADIANCE_COEFFICIENTS = RECORDS_SITE_INPUTS, RADIANCE_GRADIENT, RADIANCE_
 /* clang-format on */
 
 typedef struct {
-    stage_records        records;
-    assay_record_store  *store;
+    stage_records        records; /* as given: what weighs                                */
+    assay_record_store  *store;   /* the same                                             */
+    assay_record        *turned;  /* with normals of unit length in double: what is turned */
     assay_basis         *hsh;
     assay_radiance_turn *turn;
     assay_radiance_rows  rows;

@@ -111,8 +111,8 @@ static assay_status hear_parts(const light_job *job, int worker, size_t pixel, a
         const uint32_t number = parts->numbers[k];
         double         said[CHANNELS];
         status = radiance_said_bound(radiance->bound, r, radiance->records.exact, &radiance->rows,
-                                     &radiance->records.records[number], number, p,
-                                     job->normals[pixel], worker, hearing);
+                                     &radiance->turned[number], number, p, job->frames[pixel].z,
+                                     worker, hearing);
         reflect(hearing->said, own->brdf, count, said);
         for (size_t c = 0; c < CHANNELS && status == ASSAY_OK; c++) {
             parts->items[k].said[c] = (tracked){
@@ -132,7 +132,7 @@ static assay_status bound_pixel(const light_job *job, int worker, size_t pixel, 
     record_parts         *parts    = &radiance->parts[worker];
     const desk           *own      = &job->desks[worker];
     const lobe_pixel      shown    = pixel_of(job, pixel);
-    const tracked_frame   here     = tracked_frame_from_z(r, job->normals[pixel]);
+    const tracked_frame   here     = tracked_frame_from_z(r, job->frames[pixel].z);
     const tracked_frame   there    = tracked_frame_given(r, &job->frames[pixel]);
     const tracked         weight   = tracked_given(r, job->run->in[SPLAT_WEIGHT].values[pixel]);
     lobe_bound(&job->lobes, radiance->bound, r, &shown, own->sizes, own->errors);
@@ -156,7 +156,7 @@ static assay_status take_brdf(const light_job *job, int worker, size_t pixel)
 {
     const desk        *own    = &job->desks[worker];
     const lobe_pixel   shown  = pixel_of(job, pixel);
-    const assay_frame3 here   = frame3_from_z(job->normals[pixel]);
+    const assay_frame3 here   = frame3_from_z(job->frames[pixel].z);
     const assay_status status = lobe_look_up(&job->lobes, &shown, own->scratch, own->brdf);
     return status ? status
                   : assay_radiance_rows_turn(&job->radiance.rows, &job->frames[pixel], &here,
@@ -173,7 +173,7 @@ static assay_status light_pixel(void *user, uint64_t pixel, int worker)
     if (isnan(p.x)) {
         return ASSAY_OK;
     }
-    const assay_frame3 here   = frame3_from_z(job->normals[pixel]);
+    const assay_frame3 here   = frame3_from_z(job->frames[pixel].z);
     assay_status       status = take_brdf(job, worker, (size_t)pixel);
     status                    = status ? status
                                        : assay_record_store_find(job->radiance.store, p, job->normals[pixel], job->end,
@@ -181,8 +181,8 @@ static assay_status light_pixel(void *user, uint64_t pixel, int worker)
     for (size_t k = 0; status == ASSAY_OK && k < own->found.count; k++) {
         const assay_contribution *item = &own->found.items[k];
         double                    said[CHANNELS];
-        status = assay_radiance_rows_say(rows, &job->radiance.records.records[item->number],
-                                         item->number, p, &here, worker, own->light);
+        status = assay_radiance_rows_say(rows, &job->radiance.turned[item->number], item->number, p,
+                                         &here, worker, own->light);
         reflect(own->light, own->brdf, rows->count / CHANNELS, said);
         total += item->weight;
         for (int c = 0; c < CHANNELS; c++) {
@@ -257,7 +257,7 @@ static assay_status take_pixels(light_job *job)
         return stage_fail_columns(run, SPLAT_BRDF, BRDF_COLUMNS);
     }
     assay_status status = stage_query_points(run, SPLAT_POSITION, SPLAT_BRDF, 6, &job->normals);
-    status = status ? status : stage_query_frames(run, SPLAT_BRDF, job->normals, &job->frames);
+    status              = status ? status : stage_query_frames(run, SPLAT_BRDF, &job->frames);
     return status ? status : stage_unit_vectors(run, SPLAT_BRDF, 9, &job->wo);
 }
 

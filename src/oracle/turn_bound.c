@@ -47,14 +47,24 @@ struct turn_bound {
 
 /* ---- frames ---- */
 
-tracked_frame tracked_frame_given(const rounding *r, const assay_frame3 *frame)
+/* Ours are brought to unit length, by no more than what they lost when they were stored. */
+static rounding twice_given(const rounding *r)
 {
+    rounding twice = *r;
+    twice.given *= 2.0;
+    return twice;
+}
+
+tracked_frame tracked_frame_given(const rounding *once, const assay_frame3 *frame)
+{
+    const rounding twice = twice_given(once), *r = &twice;
     return (tracked_frame){tracked3_given(r, frame->x), tracked3_given(r, frame->y),
                            tracked3_given(r, frame->z)};
 }
 
-tracked_frame tracked_frame_from_z(const rounding *r, assay_vec3 n)
+tracked_frame tracked_frame_from_z(const rounding *once, assay_vec3 n)
 {
+    const rounding twice = twice_given(once), *r = &twice;
     const tracked3 z    = tracked3_given(r, n);
     const tracked  sign = tracked_exact(copysign(1.0, n.z));
     const tracked  a    = tracked_div(r, tracked_exact(-1.0), tracked_add(r, sign, z.z));

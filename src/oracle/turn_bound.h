@@ -15,10 +15,10 @@ typedef struct {
     tracked3 x, y, z;
 } tracked_frame;
 
-/* frame3_from_z of a normal as it is given. */
-tracked_frame tracked_frame_from_z(const rounding *r, assay_vec3 n);
-/* A frame that is given. */
-tracked_frame tracked_frame_given(const rounding *r, const assay_frame3 *frame);
+/* frame3_from_z of a normal that is given, brought to unit length. */
+tracked_frame tracked_frame_from_z(const rounding *once, assay_vec3 n);
+/* A frame that is given, made orthonormal. */
+tracked_frame tracked_frame_given(const rounding *once, const assay_frame3 *frame);
 
 typedef struct turn_bound turn_bound;
 

@@ -219,8 +219,9 @@ assay_status assay_radiance_cache_look_up(assay_radiance_cache *cache, assay_vec
         return status;
     }
     status = assay_radiance_rows_mean(
-        &rows, assay_irradiance_cache_store(cache->records), found, position, frame, worker,
-        cache->scratch + (size_t)worker * 2 * cache->count, coefficients_out);
+        &rows, assay_record_store_at(assay_irradiance_cache_store(cache->records), 0), found,
+        position, frame, worker, cache->scratch + (size_t)worker * 2 * cache->count,
+        coefficients_out);
     if (status == ASSAY_OK) {
         *found_out = true;
     }

@@ -39,8 +39,7 @@ assay_status assay_radiance_rows_turn(const assay_radiance_rows *rows, const ass
     return assay_radiance_turn_apply(rows->turn, worker, from, to, coefficients);
 }
 
-assay_status assay_radiance_rows_mean(const assay_radiance_rows *rows,
-                                      const assay_record_store  *store,
+assay_status assay_radiance_rows_mean(const assay_radiance_rows *rows, const assay_record *records,
                                       const assay_contributions *found, assay_vec3 position,
                                       const assay_frame3 *frame, int worker, double *scratch,
                                       double *coefficients_out)
@@ -53,8 +52,8 @@ assay_status assay_radiance_rows_mean(const assay_radiance_rows *rows,
     memset(sum, 0, rows->count * sizeof *sum);
     for (size_t k = 0; k < found->count && status == ASSAY_OK; k++) {
         const assay_contribution *item = &found->items[k];
-        status = assay_radiance_rows_say(rows, assay_record_store_at(store, item->number),
-                                         item->number, position, &here, worker, moved);
+        status = assay_radiance_rows_say(rows, &records[item->number], item->number, position,
+                                         &here, worker, moved);
         /* A running mean, as assay_record_store_interpolate has. */
         total += item->weight;
         const double share = item->weight / total;

@@ -26,9 +26,9 @@ assay_status assay_radiance_rows_turn(const assay_radiance_rows *rows, const ass
                                       const assay_frame3 *to, int worker, double *coefficients);
 
 /* Eq. 2.8 for rows: the mean of what the records that were found say at the point, in its frame,
- * whose z is the normal there; found->count > 0.  scratch: two rows.  Errors: DOMAIN. */
-assay_status assay_radiance_rows_mean(const assay_radiance_rows *rows,
-                                      const assay_record_store  *store,
+ * whose z is the normal there; found->count > 0.  records: all of them.  scratch: two rows. Errors:
+ * DOMAIN. */
+assay_status assay_radiance_rows_mean(const assay_radiance_rows *rows, const assay_record *records,
                                       const assay_contributions *found, assay_vec3 position,
                                       const assay_frame3 *frame, int worker, double *scratch,
                                       double *coefficients_out);
