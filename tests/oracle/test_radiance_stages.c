@@ -125,6 +125,24 @@ static void test_interpolate_radiance(void **state)
     free(d);
 }
 
+/* The bundle has floats, the candidate what was rounded to them. */
+static void test_stored_as_floats(void **state)
+{
+    radiance_data     *d = radiance_data_make(), *stored = radiance_data_stored(d, 24);
+    bound_use          sums = {0}, alone = {0};
+    radiance_candidate c;
+    radiance_candidate_open(&c, *state, d);
+    for (int way = 0; way < WAYS; way++) {
+        radiance_candidate_choose(&c, ASSAY_PRECISION_FLOAT, RIGHT, (turning)way, way % 2);
+        const bound_use use = use_coefficients(stored, &c, ASSAY_PRECISION_FLOAT, &sums, &alone);
+        print_message("stored as floats: %.3f of the bound\n", use.most);
+        assert_int_equal(use.beyond, 0);
+    }
+    radiance_candidate_close(&c);
+    free(stored);
+    free(d);
+}
+
 /* ---- turns by themselves ---- */
 
 /* As a stage reads what was stored with few digits. */
@@ -340,6 +358,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_turns, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_interpolate_radiance, context_set_up,
                                         context_tear_down),
+        cmocka_unit_test_setup_teardown(test_stored_as_floats, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_worst_product, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_edge, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_angles, context_set_up, context_tear_down),

@@ -88,6 +88,19 @@ radiance_data *radiance_data_make(void)
     return d;
 }
 
+radiance_data *radiance_data_stored(const radiance_data *d, int digits)
+{
+    const few_digits f      = {.digits = digits};
+    radiance_data   *stored = malloc(sizeof *stored);
+    assert_non_null(stored);
+    *stored        = *d;
+    double *values = (double *)stored;
+    for (size_t i = 0; i < offsetof(radiance_data, grids) / sizeof *values; i++) {
+        values[i] = few(&f, values[i]);
+    }
+    return stored;
+}
+
 void radiance_data_add(const stage_case *c, const radiance_data *d)
 {
     stage_case_text(c, "a", "0.6");

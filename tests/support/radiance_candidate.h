@@ -57,6 +57,9 @@ typedef struct {
 
 /* Records, points at and near them, pixels that show lobes; free it. */
 radiance_data *radiance_data_make(void);
+/* All but the grids rounded: normals are not quite of unit length, and frames not quite
+ * orthonormal. Free it. */
+radiance_data *radiance_data_stored(const radiance_data *d, int digits);
 /* Texts and tables of the records. */
 void radiance_data_add(const stage_case *c, const radiance_data *d);
 /* d: may be NULL for turns alone. */
