@@ -30,11 +30,15 @@ static const assay_stage_array OUTPUTS[] = {
 /* clang-format on */
 
 typedef struct {
+    stage_output *weight;
+} batch_sums;
+
+typedef struct {
     stage_run         *run;
     stage_records      records;
     splat_batch       *batches;
     size_t             batch_count;
-    stage_output     **out;   /* a batch  */
+    batch_sums        *out;   /* a batch  */
     record_parts      *parts; /* a worker */
     assay_octree_walk *walks; /* a worker */
 } weights_job;
@@ -65,10 +69,10 @@ static assay_status weigh_batch(const weights_job *job, size_t k, size_t pixel, 
         status ? status
                : record_parts_collect(&records, r, &job->walks[worker], b->end, p, n, &sum, parts);
     if (status == ASSAY_OK) {
-        job->out[k]->values[pixel] = sum_below(&records, &parts->near, b->old, p, n) +
-                                     sum_below(&records, &parts->near, b->end, p, n);
+        job->out[k].weight->values[pixel] = sum_below(&records, &parts->near, b->old, p, n) +
+                                            sum_below(&records, &parts->near, b->end, p, n);
         if (job->run->bounded) {
-            job->out[k]->bounds[pixel] = tracked_sum_of(r, &sum).e;
+            job->out[k].weight->bounds[pixel] = tracked_sum_of(r, &sum).e;
         }
     }
     return status;
@@ -104,7 +108,7 @@ static assay_status open_job(stage_run *run, weights_job *job)
     double widest = 0.0;
     for (size_t k = 0; k < job->batch_count && status == ASSAY_OK; k++) {
         widest = fmax(widest, job->batches[k].a);
-        status = stage_output_make(run, 0, job->batches[k].number, pixels, 1, &job->out[k]);
+        status = stage_output_make(run, 0, job->batches[k].number, pixels, 1, &job->out[k].weight);
     }
     return status ? status
                   : stage_records_index(&job->records, &run->rounding, pixels,
@@ -118,7 +122,7 @@ static void close_job(const stage_run *run, weights_job *job)
     }
     assay_release(run->context, job->parts);
     assay_release(run->context, job->walks);
-    assay_release(run->context, (void *)job->out);
+    assay_release(run->context, job->out);
     assay_release(run->context, job->batches);
     stage_records_close(&job->records);
 }

@@ -100,12 +100,18 @@ void turn_bound_destroy(turn_bound *bound)
     }
 }
 
+static size_t pair_at(int l, int m)
+{
+    const size_t band = (size_t)l, away = (size_t)(m < 0 ? -m : m);
+    return band * (band + 1) / 2 + away;
+}
+
 static void find_pairs(turn_bound *b)
 {
     for (size_t i = 0; i < b->count; i++) {
         int l = 0, m = 0;
         assay_basis_function(b->hsh, i, &l, &m);
-        const size_t pair = (size_t)(l * (l + 1) / 2 + (m < 0 ? -m : m));
+        const size_t pair = pair_at(l, m);
         b->l[pair]        = l;
         b->m[pair]        = m < 0 ? -m : m;
         if (m >= 0) {
@@ -191,7 +197,7 @@ size_t turn_bound_pair_of(const turn_bound *bound, size_t function)
 {
     int l = 0, m = 0;
     assay_basis_function(bound->hsh, function, &l, &m);
-    return (size_t)(l * (l + 1) / 2 + (m < 0 ? -m : m));
+    return pair_at(l, m);
 }
 
 static double hypotenuse(double a, double b) { return sqrt(a * a + b * b); }

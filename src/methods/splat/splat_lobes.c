@@ -4,6 +4,7 @@
  * Invariant: a grid is written once, however many materials and channels share it. */
 #include "methods/splat/splat_lobes.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -101,8 +102,9 @@ assay_status splat_lobes_add(const splat_image *image, const splat_layer *layer,
 {
     grid_list    list   = {0};
     assay_status status = list_grids(image, &list);
-    status              = status ? status : add_grids(image, name, &list);
-    status              = status ? status : add_pixels(image, layer, name, &list);
+    assert(status != ASSAY_OK || list.grids); /* else no pixel would be glossy */
+    status = status ? status : add_grids(image, name, &list);
+    status = status ? status : add_pixels(image, layer, name, &list);
     assay_release(image->context, (void *)list.grids);
     return status;
 }
