@@ -152,8 +152,10 @@ static assay_vec3 stored(const few_digits *given, assay_vec3 n)
     return given->digits == 53 ? n : vec3_normalize(rounded);
 }
 
-/* Normals were stored with fewer digits than the candidate computes with, or with as many. */
-static bound_use use_turns(radiance_candidate *c, const rounding *r, const few_digits *given)
+/* Normals were stored with fewer digits than the candidate computes with, or with as many.  widest:
+ * of the table's bounds where there is next to no tilt, in parts of a row's length. */
+static bound_use use_turns(radiance_candidate *c, const rounding *r, const few_digits *given,
+                           double *widest)
 {
     enum { PAIRS = ORDER * (ORDER + 1) / 2 };
     const assay_radiance_turn_settings settings = {.way =
@@ -197,6 +199,9 @@ static bound_use use_turns(radiance_candidate *c, const rounding *r, const few_d
             turn_bound_sizes(bound, theirs + k * COUNT, away + k * PAIRS);
         }
         for (size_t k = 0; k < (size_t)3 * PAIRS; k++) {
+            if (!c->exact && vec3_length(vec3_sub(a, b)) < 1.5e-6) {
+                *widest = fmax(*widest, errors[k] / sqrt(COUNT / 3.0));
+            }
             bound_use_add(&use, away[k], 0.0, errors[k]);
         }
     }
@@ -211,21 +216,23 @@ static void test_turns(void **state)
     radiance_candidate_open(&c, *state, NULL);
     for (int p = ASSAY_PRECISION_HALF; p <= ASSAY_PRECISION_DOUBLE; p++) {
         for (int stored = 0; stored <= p; stored++) {
-            const bool exact = p == ASSAY_PRECISION_FLOAT; /* takes its time */
-            bound_use  most  = {0};
+            const bool exact  = p == ASSAY_PRECISION_FLOAT; /* takes its time */
+            bound_use  most   = {0};
+            double     widest = 0.0;
             for (int way = 0; way < 4 * WAYS; way += way % 4 == 1 && !exact ? 3 : 1) {
                 radiance_candidate_choose(&c, p, RIGHT, (turning)(way / 4), way % 2);
                 c.exact                = way % 4 > 1;
                 const few_digits given = {.digits = DIGITS[stored]};
                 rounding         r     = stage_rounding_of((assay_precision)p);
                 r.given = fmax(r.given, (stored < p ? 2.0 : 1.0) * ldexp(1.0, -DIGITS[stored]));
-                const bound_use use = use_turns(&c, &r, &given);
+                const bound_use use = use_turns(&c, &r, &given, &widest);
                 most.most           = fmax(most.most, use.most);
                 most.beyond += use.beyond;
             }
-            print_message("turns, %d digits of %d given: %.3f of the bound\n", DIGITS[p],
-                          DIGITS[stored], most.most);
+            print_message("turns, %d digits of %d given: %.3f of the bound; widest %.3g\n",
+                          DIGITS[p], DIGITS[stored], most.most, widest);
             assert_int_equal(most.beyond, 0);
+            assert_true(p != ASSAY_PRECISION_FLOAT || stored < p || widest < 0.03);
             assert_true(p == ASSAY_PRECISION_DOUBLE || most.most > (stored < p ? 0.003 : 0.03));
         }
     }
