@@ -111,39 +111,50 @@ static void bound_mean(const job_data *job, int worker, bool sure)
     }
 }
 
-static assay_status bound_point(const job_data *job, int worker, size_t i)
+static assay_status bound_coefficients(const job_data *job, int worker, size_t i)
 {
     const stage_radiance *radiance = &job->radiance;
     const rounding       *r        = &job->run->rounding;
+    const record_parts   *parts    = &radiance->parts[worker];
     desk                 *own      = &job->desks[worker];
-    record_parts         *parts    = &radiance->parts[worker];
-    tracked_sum           weights  = {0};
     const size_t          row = radiance->rows.count, count = row / CHANNELS;
     const size_t          pairs  = turn_bound_pairs(radiance->bound);
+    const tracked_frame   here   = tracked_frame_from_z(r, job->frames[i].z);
+    const tracked_frame   asked  = tracked_frame_given(r, &job->frames[i]);
     double                surest = 0.0;
-    assay_status          status = record_parts_collect(
-                 &radiance->records, r, &radiance->walks[worker], UINT32_MAX,
-                 stage_vec3(job->run->in[QUERY_POSITION].values + 3 * i), job->normals[i], &weights, parts);
-    status = status ? status : hear_parts(job, worker, i);
+    const assay_status    status = hear_parts(job, worker, i);
     if (status != ASSAY_OK) {
         return status;
     }
     for (size_t k = 0; k < parts->count; k++) {
         surest += parts->items[k].low;
     }
-    job->out[OUT_WEIGHT]->bounds[i] = tracked_sum_of(r, &weights).e;
     bound_mean(job, worker, surest > 0.0);
     for (size_t c = 0; c < CHANNELS; c++) {
         turn_bound_sizes(radiance->bound, own->mean + c * count, own->sizes + c * pairs);
     }
-    const tracked_frame here  = tracked_frame_from_z(r, job->frames[i].z);
-    const tracked_frame asked = tracked_frame_given(r, &job->frames[i]);
     turn_bound_spin(radiance->bound, r, &here, &asked, own->sizes, own->off);
     for (size_t k = 0; k < row; k++) {
         job->out[OUT_COEFFICIENTS]->bounds[i * row + k] =
             own->off[k / count * pairs + turn_bound_pair_of(radiance->bound, k % count)];
     }
     return ASSAY_OK;
+}
+
+static assay_status bound_point(const job_data *job, int worker, size_t i)
+{
+    const stage_radiance *radiance = &job->radiance;
+    const rounding       *r        = &job->run->rounding;
+    const assay_vec3      p        = stage_vec3(job->run->in[QUERY_POSITION].values + 3 * i);
+    tracked_sum           weights  = {0};
+    const assay_status    status =
+        record_parts_collect(&radiance->records, r, &radiance->walks[worker], UINT32_MAX, p,
+                             job->normals[i], &weights, &radiance->parts[worker]);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    job->out[OUT_WEIGHT]->bounds[i] = tracked_sum_of(r, &weights).e;
+    return radiance->bound ? bound_coefficients(job, worker, i) : ASSAY_OK;
 }
 
 /* ---- values ---- */
@@ -170,7 +181,7 @@ static assay_status ask_point(void *user, uint64_t i, int worker)
             status ? status : assay_radiance_rows_turn(rows, &here, &job->frames[i], worker, row);
         job->out[OUT_WEIGHT]->values[i] = own->found.weight;
     }
-    return status || !job->radiance.bound ? status : bound_point(job, worker, i);
+    return status || !job->run->bounded ? status : bound_point(job, worker, i);
 }
 
 /* ---- all of it ---- */
@@ -217,8 +228,8 @@ static assay_status make_outputs(stage_run *run, job_data *job)
                                             job->radiance.rows.count, &job->out[OUT_COEFFICIENTS]);
     status =
         status ? status : stage_output_make(run, OUT_WEIGHT, 0, points, 1, &job->out[OUT_WEIGHT]);
-    for (int i = 0; i < OUT_COUNT && !status && run->bounded && !job->radiance.bound; i++) {
-        stage_output_unknown(job->out[i]);
+    if (status == ASSAY_OK && run->bounded && !job->radiance.bound) {
+        stage_output_unknown(job->out[OUT_COEFFICIENTS]);
     }
     return status;
 }

@@ -83,24 +83,32 @@ static assay_status take_turned(const stage_run *run, stage_radiance *radiance)
     return ASSAY_OK;
 }
 
-static assay_status open_bounds(const stage_run *run, stage_radiance *radiance,
-                                const assay_radiance_turn_settings *turning)
+static assay_status open_turns(const stage_run *run, stage_radiance *radiance,
+                               const assay_radiance_turn_settings *turning)
 {
-    const size_t threads = radiance->workers;
     assay_status status =
         turn_bound_create(run->context, radiance->hsh, radiance->turn, turning, &radiance->bound);
     if (status != ASSAY_OK) {
         return status;
     }
-    radiance->desks = assay_allocate(run->context, threads, sizeof *radiance->desks);
-    radiance->walks = assay_allocate(run->context, threads, sizeof *radiance->walks);
-    radiance->parts = assay_allocate(run->context, threads, sizeof *radiance->parts);
-    status = radiance->desks && radiance->walks && radiance->parts ? ASSAY_OK : ASSAY_ERR_MEMORY;
-    for (size_t i = 0; i < threads && status == ASSAY_OK; i++) {
+    radiance->desks = assay_allocate(run->context, radiance->workers, sizeof *radiance->desks);
+    status          = radiance->desks ? ASSAY_OK : ASSAY_ERR_MEMORY;
+    for (size_t i = 0; i < radiance->workers && status == ASSAY_OK; i++) {
         status = radiance_desk_create(run->context, radiance->bound,
                                       radiance->rows.count / CHANNELS, &radiance->desks[i]);
     }
     return status ? assay_fail_memory(run->context, "bounds of radiance") : ASSAY_OK;
+}
+
+static assay_status open_bounds(const stage_run *run, stage_radiance *radiance,
+                                const assay_radiance_turn_settings *turning)
+{
+    radiance->walks = assay_allocate(run->context, radiance->workers, sizeof *radiance->walks);
+    radiance->parts = assay_allocate(run->context, radiance->workers, sizeof *radiance->parts);
+    if (!radiance->walks || !radiance->parts) {
+        return assay_fail_memory(run->context, "bounds of radiance");
+    }
+    return turn_bound_covers(turning->way) ? open_turns(run, radiance, turning) : ASSAY_OK;
 }
 
 assay_status stage_radiance_open(stage_run *run, bool splatted, size_t count, const double *points,
@@ -119,7 +127,7 @@ assay_status stage_radiance_open(stage_run *run, bool splatted, size_t count, co
     status = stage_records_store(&radiance->records, &radiance->store);
     status = status ? status : take_turned(run, radiance);
     status = status ? status : open_rows(run, radiance, &turning);
-    if (status || !run->bounded || !turn_bound_covers(turning.way)) {
+    if (status || !run->bounded) {
         return status;
     }
     status = open_bounds(run, radiance, &turning);

@@ -49,11 +49,11 @@ typedef struct {
     assay_basis         *hsh;
     assay_radiance_turn *turn;
     assay_radiance_rows  rows;
-    turn_bound          *bound; /* NULL: none is asked, or the way is not analysed */
+    turn_bound          *bound; /* NULL: no bound is asked, or the way is not analysed        */
     size_t               workers;
-    radiance_desk       *desks; /* a worker, where bounds are */
-    assay_octree_walk   *walks; /* the same                   */
-    record_parts        *parts; /* the same                   */
+    radiance_desk       *desks; /* a worker, where turns are analysed                         */
+    assay_octree_walk   *walks; /* a worker, where bounds are asked                           */
+    record_parts        *parts; /* the same                                                   */
 } stage_radiance;
 
 /* splatted: weights are those of the last batch of a splatting.  points: rows of x y z, where
