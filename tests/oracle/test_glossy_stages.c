@@ -13,6 +13,7 @@
 
 #include "core/numerics.h"
 #include "oracle/lobe_bound.h"
+#include "support/failing_context.h"
 #include "support/measure.h"
 #include "support/radiance_candidate.h"
 #include "support/random_places.h"
@@ -256,12 +257,73 @@ static void test_splat_glossy(void **state)
     free(d);
 }
 
+/* ---- without memory ---- */
+
+typedef struct {
+    const char *path, *stage;
+} small_run;
+
+static assay_status run_once(assay_context *context, void *user)
+{
+    const small_run      *run       = user;
+    const assay_precision precision = ASSAY_PRECISION_FLOAT;
+    assay_bundle_reader  *reader    = NULL;
+    stage_run             made;
+    assay_status          status = assay_bundle_open(context, run->path, &reader);
+    if (status == ASSAY_OK) {
+        status = stage_run_start(&made, context, assay_stage_find(run->stage), reader, NULL,
+                                 &precision, 0, NULL);
+        stage_run_release(&made);
+    }
+    assay_bundle_close(reader);
+    return status;
+}
+
+/* A dozen records and a few pixels: every block that is refused is named, and nothing is left. */
+static void test_no_memory(void **state)
+{
+    enum { FEW = 12, SPOTS = 4, SIDE_OF_GRID = 2 };
+    radiance_data *d = radiance_data_make();
+    stage_case     s = stage_case_begin(*state);
+    stage_case_text(&s, "a", "0.6");
+    stage_case_text(&s, "order", "4");
+    stage_case_text(&s, "rotation_steps", "2");
+    stage_case_text(&s, "grid", "2");
+    stage_case_table(&s, "radiance_records/position", "m", FEW, 3, d->position);
+    stage_case_table(&s, "radiance_records/normal", "", FEW, 3, d->normal);
+    stage_case_table(&s, "radiance_records/radius", "m", FEW, 1, d->radius);
+    stage_case_table(&s, "radiance_records/coefficients", "W/(m2 sr)", FEW, ROW, d->coefficients);
+    stage_case_table(&s, "radiance_records/coefficient_gradient", "W/(m3 sr)", FEW, (size_t)3 * ROW,
+                     d->gradient);
+    stage_case_table(&s, "radiance_query/position", "m", SPOTS, 3, d->at);
+    stage_case_table(&s, "radiance_query/frame", "", SPOTS, 9, d->frame);
+    stage_case_table(&s, "splat_glossy/position", "m", SPOTS, 3, d->at);
+    stage_case_table(&s, "splat_glossy/frame", "", SPOTS, 9, d->frame);
+    stage_case_table(&s, "splat_glossy/brdf", "", SPOTS, 15, d->brdf);
+    stage_case_table(&s, "splat_glossy/lobe", "", SPOTS, LOBES, d->lobe);
+    stage_case_table(&s, "splat_glossy/lobe_grid", "1/sr",
+                     (size_t)LOBES * SIDE_OF_GRID * SIDE_OF_GRID, COUNT, d->grids);
+    stage_case_table(&s, "splat_glossy/batch.0/weight", "", SPOTS, 1, d->weight);
+    stage_case_finish(&s);
+    static const char *const stages[] = {"interpolate-radiance", "splat-glossy",
+                                         "splat-glossy-light"};
+    for (size_t i = 0; i < sizeof stages / sizeof stages[0]; i++) {
+        small_run run      = {s.path, stages[i]};
+        const int refusals = failing_each(run_once, &run);
+        print_message("%s: %d refusals\n", stages[i], refusals);
+        assert_true(refusals > 40);
+    }
+    stage_case_end(&s);
+    free(d);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_lobes, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_splat_glossy_light, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_splat_glossy, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_no_memory, context_set_up, context_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
