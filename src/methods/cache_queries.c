@@ -151,7 +151,7 @@ static void choose_pixels(radiance_job *job)
     for (size_t i = 0; i < pixels; i++) {
         glossy += job->glossy[i];
     }
-    const size_t step = (glossy + ASSAY_CACHE_QUERIES_MOST - 1) / ASSAY_CACHE_QUERIES_MOST;
+    const size_t step = glossy > 0 ? (glossy - 1) / ASSAY_CACHE_QUERIES_MOST + 1 : 1;
     for (size_t i = 0; i < pixels; i++) {
         if (job->glossy[i] && seen++ % step == 0) {
             job->pixels[job->count++] = i;
