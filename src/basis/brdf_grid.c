@@ -13,6 +13,10 @@
  * functions' values are the same for every texel and computed once.  Integrals run over the
  * hemisphere for SH, too: below the horizon a BRDF is 0, and its edge would spoil a rule that does
  * not know of it. */
+#include "basis/brdf_grid.h"
+
+#include <string.h>
+
 #include "basis/analysis.h"
 #include "basis/projection.h"
 #include "basis/sphere_rule.h"
@@ -161,25 +165,56 @@ static assay_status prepare(grid_maker *maker, assay_brdf_grid *grid, int theta_
                                         : assay_fail_memory(maker->context, "a BRDF grid");
 }
 
-static assay_status create(const assay_basis *basis, assay_context *context, assay_brdf_function f,
-                           void *user, int side, int theta_nodes, int phi_nodes, bool parallel,
-                           assay_brdf_grid **grid_out)
+static assay_status check_side(assay_context *context, int side)
 {
-    if (side < 1 || side > MAX_SIDE) {
-        return assay_fail(context, ASSAY_ERR_ARGUMENT,
-                          "a BRDF grid of %d x %d directions: from 1 to %d each way are possible",
-                          side, side, MAX_SIDE);
+    return side >= 1 && side <= MAX_SIDE
+               ? ASSAY_OK
+               : assay_fail(context, ASSAY_ERR_ARGUMENT,
+                            "a BRDF grid of %d x %d directions: from 1 to %d each way are possible",
+                            side, side, MAX_SIDE);
+}
+
+assay_status assay_brdf_grid_from_texels(assay_context *context, int side, size_t count,
+                                         const double *texels, assay_brdf_grid **grid_out)
+{
+    const size_t       rows   = (size_t)side * (size_t)side;
+    const assay_status status = check_side(context, side);
+    if (status != ASSAY_OK) {
+        return status;
     }
     assay_brdf_grid *grid = assay_allocate(context, 1, sizeof *grid);
     if (!grid) {
         return assay_fail_memory(context, "a BRDF grid");
     }
-    grid->context       = context;
-    grid->side          = side;
-    grid->count         = assay_basis_count(basis);
-    grid_maker maker    = {.basis = basis, .context = context, .f = f, .user = user};
-    maker.rule.context  = context;
-    assay_status status = prepare(&maker, grid, theta_nodes, phi_nodes);
+    *grid        = (assay_brdf_grid){.context = context, .side = side, .count = count};
+    grid->texels = assay_allocate(context, rows, count * sizeof(double));
+    if (!grid->texels) {
+        assay_brdf_grid_destroy(grid);
+        return assay_fail_memory(context, "a BRDF grid");
+    }
+    memcpy(grid->texels, texels, rows * count * sizeof *texels);
+    *grid_out = grid;
+    return ASSAY_OK;
+}
+
+static assay_status create(const assay_basis *basis, assay_context *context, assay_brdf_function f,
+                           void *user, int side, int theta_nodes, int phi_nodes, bool parallel,
+                           assay_brdf_grid **grid_out)
+{
+    assay_status status = check_side(context, side);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    assay_brdf_grid *grid = assay_allocate(context, 1, sizeof *grid);
+    if (!grid) {
+        return assay_fail_memory(context, "a BRDF grid");
+    }
+    grid->context      = context;
+    grid->side         = side;
+    grid->count        = assay_basis_count(basis);
+    grid_maker maker   = {.basis = basis, .context = context, .f = f, .user = user};
+    maker.rule.context = context;
+    status             = prepare(&maker, grid, theta_nodes, phi_nodes);
     if (status == ASSAY_OK) {
         status = fill_grid(&maker, grid, parallel);
     }

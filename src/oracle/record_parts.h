@@ -10,10 +10,12 @@
 typedef struct {
     stage_candidates near;
     mean_part       *items;
-    size_t           count, capacity;
+    uint32_t        *numbers; /* of the records, ascending */
+    size_t           count, capacity, number_capacity;
 } record_parts;
 
-/* Of the records below number `end` that may contribute at p with unit normal n.  weights, if it is
+/* Of the records below number `end` that may contribute at p with unit normal n; what is said is 0
+ * where records have no light.  weights, if it is
  * not NULL, is given the weight of each with its error.  Errors: MEMORY. */
 assay_status record_parts_collect(const stage_records *records, const rounding *r,
                                   assay_octree_walk *walk, uint32_t end, assay_vec3 p, assay_vec3 n,

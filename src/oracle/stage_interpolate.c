@@ -18,8 +18,7 @@ static const assay_param_desc PARAMS[] = {STAGE_RULE_PARAMS, STAGE_SAID_PARAMS, 
 
 static const assay_stage_array INPUTS[] = {
     STAGE_RECORD_ARRAYS,
-    {"query/position", "m", "X Y Z", "point", "where it is asked", false, false, false},
-    {"query/normal", "", "X Y Z", "point", "unit normal there", false, false, false},
+    STAGE_QUERY_ARRAYS,
     {0}};
 
 static const assay_stage_array OUTPUTS[] = {
@@ -77,8 +76,11 @@ static assay_status bound_point(const job_data *job, desk *own, size_t i, assay_
 
 static assay_status ask_point(const job_data *job, desk *own, size_t i)
 {
-    const assay_vec3   p      = stage_vec3(job->run->in[QUERY_POSITION].values + 3 * i);
-    const assay_vec3   n      = job->normals[i];
+    const assay_vec3 p = stage_vec3(job->run->in[QUERY_POSITION].values + 3 * i);
+    const assay_vec3 n = job->normals[i];
+    if (isnan(p.x)) {
+        return ASSAY_OK;
+    }
     const assay_status status = assay_record_store_find(job->store, p, n, UINT32_MAX, &own->found);
     if (status != ASSAY_OK) {
         return status;
@@ -140,12 +142,9 @@ static assay_status ask_all(stage_run *run, stage_records *records)
     const size_t points  = run->in[QUERY_POSITION].rows;
     assay_vec3  *normals = NULL;
     job_data     job     = {.run = run, .records = records};
-    if (run->in[QUERY_NORMAL].rows != points) {
-        return stage_fail_rows(run, QUERY_NORMAL, points, "one a point, as of query/position");
-    }
-    assay_status status = stage_unit_vectors(run, QUERY_NORMAL, 0, &normals);
-    status              = status ? status : stage_records_store(records, &job.store);
-    status              = status ? status : make_room(run, &job);
+    assay_status status  = stage_query_points(run, QUERY_POSITION, QUERY_NORMAL, 0, &normals);
+    status               = status ? status : stage_records_store(records, &job.store);
+    status               = status ? status : make_room(run, &job);
     if (status == ASSAY_OK && run->bounded) {
         status = stage_records_index(records, &run->rounding, points,
                                      run->in[QUERY_POSITION].values, 0.0);

@@ -13,9 +13,13 @@ const oracle_stage *const assay_stages[] = {
     &stage_irradiance,
     &stage_weights,
     &stage_interpolate,
+    &stage_interpolate_radiance,
     &stage_splat,
     &stage_splat_light,
+    &stage_splat_glossy,
+    &stage_splat_glossy_light,
     &stage_normalise,
+    &stage_normalise_glossy,
     &stage_combine_irradiance,
     &stage_combine,
     &stage_project,
@@ -38,7 +42,7 @@ const oracle_stage *assay_stage_find(const char *name)
 
 assay_status stage_fail_unknown(assay_context *context, const char *name)
 {
-    char   known[256] = "";
+    char   known[512] = "";
     size_t used       = 0;
     for (int i = 0; i < assay_stage_count() && used < sizeof known; i++) {
         used += (size_t)snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "",

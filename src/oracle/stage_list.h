@@ -5,7 +5,9 @@
 #include "oracle/stage.h"
 
 extern const oracle_stage stage_visible, stage_gather, stage_irradiance, stage_weights,
-    stage_interpolate, stage_splat, stage_splat_light, stage_normalise, stage_combine,
-    stage_combine_irradiance, stage_project, stage_rotate, stage_convert, stage_reflect;
+    stage_interpolate, stage_interpolate_radiance, stage_splat, stage_splat_light,
+    stage_splat_glossy, stage_splat_glossy_light, stage_normalise_glossy, stage_normalise,
+    stage_combine_irradiance, stage_combine, stage_project, stage_rotate, stage_convert,
+    stage_reflect;
 
 #endif

@@ -62,6 +62,18 @@ static bool is_reversed(size_t columns, size_t count, const double *values, cons
     return explains(&m);
 }
 
+/* Columns in three blocks, the first for the last. */
+static bool is_swapped(size_t columns, size_t count, const double *values, const double *right)
+{
+    const size_t third = columns / 3;
+    misfit       m     = {0.0, 0.0};
+    for (size_t i = 0; columns % 3 == 0 && third > 1 && i < count; i++) {
+        const size_t block = i % columns / third;
+        add(&m, values[i], right[i], right[i - block * third + (2 - block) * third]);
+    }
+    return explains(&m);
+}
+
 /* Columns of three vectors: x y z of R, G, B for R G B of x, y, z. */
 static bool is_transposed(size_t columns, size_t count, const double *values, const double *right)
 {
@@ -86,6 +98,8 @@ void stage_meaning(size_t columns, size_t count, const double *values, const dou
         }
     } else if (is_reversed(columns, count, values, right)) {
         snprintf(words, size, " The first and the third of every three columns are exchanged.");
+    } else if (is_swapped(columns, count, values, right)) {
+        snprintf(words, size, " The first and the last third of the columns are exchanged.");
     } else if (is_transposed(columns, count, values, right)) {
         snprintf(words, size, " Vectors of channels and channels of vectors are exchanged.");
     }

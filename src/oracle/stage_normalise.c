@@ -1,4 +1,5 @@
-/* stage_normalise.c - stage `normalise`: sums of the last batch to radiance, [gautron06] eq. 4.1.
+/* stage_normalise.c - stages `normalise` and `normalise-glossy`: sums of the last batch to
+ * radiance, [gautron06] eq. 4.1.
  *
  * A sum of weights that is 0 divides nothing: the result is black. */
 #include "oracle/stage_list.h"
@@ -8,17 +9,20 @@ enum { WEIGHT, RADIANCE };
 /* clang-format off */
 static const assay_param_desc PARAMS[] = {{0}};
 
-static const assay_stage_array INPUTS[] = {
-    {"splat/batch.#/weight", "", "W", "pixel", "sum of weights, of the last batch",
-     false, false, false},
-    {"splat/batch.#/radiance", "W/(m2 sr)", "R G B", "pixel",
-     "sum of weight times outgoing radiance", false, false, false},
-    {0}};
+#define SUMS(LAYER)                                                                                \
+    {LAYER "/batch.#/weight", "", "W", "pixel", "sum of weights, of the last batch",               \
+     false, false, false},                                                                         \
+    {LAYER "/batch.#/radiance", "W/(m2 sr)", "R G B", "pixel",                                     \
+     "sum of weight times outgoing radiance", false, false, false}
 
-static const assay_stage_array OUTPUTS[] = {
-    {"splat/result", "W/(m2 sr)", "R G B", "pixel", "the quotient; black where the weight is 0",
-     false, false, false},
-    {0}};
+#define RESULT(LAYER)                                                                              \
+    {LAYER "/result", "W/(m2 sr)", "R G B", "pixel", "the quotient; black where the weight is 0",  \
+     false, false, false}
+
+static const assay_stage_array INPUTS[]         = {SUMS("splat"), {0}};
+static const assay_stage_array OUTPUTS[]        = {RESULT("splat"), {0}};
+static const assay_stage_array GLOSSY_INPUTS[]  = {SUMS("splat_glossy"), {0}};
+static const assay_stage_array GLOSSY_OUTPUTS[] = {RESULT("splat_glossy"), {0}};
 /* clang-format on */
 
 static assay_status run_normalise(stage_run *run)
@@ -50,4 +54,12 @@ const oracle_stage stage_normalise = {
              .params  = PARAMS,
              .inputs  = INPUTS,
              .outputs = OUTPUTS},
+    .run  = run_normalise};
+
+const oracle_stage stage_normalise_glossy = {
+    .info = {.name    = "normalise-glossy",
+             .summary = "the same of what radiance records reflect",
+             .params  = PARAMS,
+             .inputs  = GLOSSY_INPUTS,
+             .outputs = GLOSSY_OUTPUTS},
     .run  = run_normalise};

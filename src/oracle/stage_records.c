@@ -1,42 +1,11 @@
-/* stage_records.c - Invariant: a normal is of unit length to 1e-6, as a record store asks for; how
- * far it was from that when it was stored is part of what is not known of it. */
+/* stage_records.c - Invariant: what the octree leaves out is out for every candidate of the
+ * precision. */
 #include "oracle/stage_records.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "core/alloc.h"
 #include "core/context.h"
-
-static const double UNIT_TOLERANCE = 1e-6;
-
-assay_status stage_unit_vectors(stage_run *run, int input, size_t column, assay_vec3 **vectors_out)
-{
-    const stage_table *t       = &run->in[input];
-    const double       allowed = fmax(UNIT_TOLERANCE, 4.0 * t->roundoff);
-    assay_vec3        *v       = assay_allocate(run->context, t->rows, sizeof *v);
-    double             moved   = 0.0;
-    if (!v) {
-        assay_fail_memory(run->context, "unit vectors");
-        return ASSAY_ERR_MEMORY;
-    }
-    for (size_t i = 0; i < t->rows; i++) {
-        v[i]              = stage_vec3(t->values + i * t->columns + column);
-        const double away = fabs(vec3_length(v[i]) - 1.0);
-        if (!(away <= allowed)) {
-            assay_release(run->context, v);
-            stage_fail_value(run, input, i, column, "a vector that is not of unit length");
-            return ASSAY_ERR_DOMAIN;
-        }
-        if (away > UNIT_TOLERANCE) {
-            v[i]  = vec3_normalize(v[i]);
-            moved = fmax(moved, away);
-        }
-    }
-    run->rounding.given += moved * (1.0 + run->rounding.given);
-    *vectors_out = v;
-    return ASSAY_OK;
-}
 
 static assay_record_rules rules_of(const assay_params *params, bool said)
 {
@@ -114,6 +83,7 @@ assay_status stage_records_open(stage_run *run, bool said, stage_records *record
 {
     stage_records made    = {.context = run->context,
                              .rules   = rules_of(run->params, said),
+                             .said    = said,
                              .count   = run->in[RECORDS_POSITION].rows};
     assay_vec3   *normals = NULL;
     assay_status  status  = check_rows(run, said);

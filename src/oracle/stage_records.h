@@ -4,7 +4,7 @@
 
 #include "math/octree.h"
 #include "oracle/record_bound.h"
-#include "oracle/stage.h"
+#include "oracle/stage_points.h"
 #include "record/record_store.h"
 
 /* The first inputs of such a stage, in this order; those of light may be missing where the stage
@@ -63,6 +63,12 @@ enum {
     {"clamp_negative", ASSAY_PARAM_BOOL, "", "on", 0, 0, NULL,                                     \
      "What is extrapolated below 0 counts as 0.",                                                  \
      "ours"}
+/* Where a cache is asked, for stage_query_points. */
+#define STAGE_QUERY_ARRAYS \
+    {"query/position", "m", "X Y Z", "point", "where it is asked; NaN where nothing is", \
+     false, true, false}, \
+    {"query/normal", "", "X Y Z", "point", "unit normal there; NaN likewise", false, true, false}
+
 /* Of the stages that splat: what a pixel shows. */
 #define STAGE_PIXEL_ARRAYS \
     {"splat/position", "m", "X Y Z", "pixel", "its point; NaN where there is none", \
@@ -75,6 +81,7 @@ enum {
 typedef struct {
     assay_context     *context;
     assay_record_rules rules;
+    bool               said; /* with light */
     size_t             count;
     assay_record      *records;
     bool               exact;      /* equal numbers are equal to the candidate (record_bound.h)   */
@@ -89,10 +96,6 @@ void         stage_records_close(stage_records *records);
 /* A store of them, with their rules.  Errors: MEMORY, LIMIT. */
 assay_status stage_records_store(const stage_records *records, assay_record_store **store_out);
 
-/* Unit vectors of an input, 3 columns from `column` on; those that were stored with few digits are
- * brought to unit length, and run->rounding says what that was.  Errors: DOMAIN, MEMORY. */
-assay_status stage_unit_vectors(stage_run *run, int input, size_t column, assay_vec3 **vectors_out);
-
 /* An octree of what may contribute at points with these coordinates, for a at least that of the
  * rules.  Errors: MEMORY, LIMIT. */
 assay_status stage_records_index(stage_records *records, const rounding *r, size_t count,
@@ -105,7 +108,5 @@ typedef struct {
 } stage_candidates;
 assay_status stage_records_near(const stage_records *records, assay_octree_walk *walk,
                                 assay_vec3 position, stage_candidates *found);
-
-static inline assay_vec3 stage_vec3(const double *row) { return vec3(row[0], row[1], row[2]); }
 
 #endif

@@ -5,8 +5,9 @@
  * at most five orthogonal matrices of size 2 l + 1 a band (the matrix itself; or turns about z and
  * constant quarter turns), each with entries that are rounded, times a vector: in the Euclidean
  * norm (2 l + 5) u sqrt(2 l + 1) |c| each, as the matrix of absolute values has at most that norm;
- * and angles that are off turn band l by at most l times as much.  HSH by angles are not analysed.
- */
+ * and angles that are off turn band l by at most l times as much.  Of HSH by angles: what
+ * turn_bound.h says of Rz(alpha), M_R(beta), eq. 3.31, and Rz(gamma), one after the other or as one
+ * matrix. */
 #include <string.h>
 
 #include "assay/basis.h"
@@ -14,6 +15,7 @@
 #include "core/context.h"
 #include "oracle/basis_bound.h"
 #include "oracle/stage_list.h"
+#include "oracle/turn_bound.h"
 
 enum { IN, MATRIX };
 
@@ -54,12 +56,15 @@ static assay_status make_matrix(const stage_run *run, const assay_basis *basis, 
                : assay_hsh_rotation(basis, run->context, NULL, rotation, matrix);
 }
 
+static double angle_error(const stage_run *run, const char *name)
+{
+    return fabs(assay_params_real(run->params, name)) *
+           (run->rounding.given + 4.0 * run->rounding.u);
+}
+
 static double angles_error(const stage_run *run)
 {
-    const double whole = fabs(assay_params_real(run->params, "alpha")) +
-                         fabs(assay_params_real(run->params, "beta")) +
-                         fabs(assay_params_real(run->params, "gamma"));
-    return whole * (run->rounding.given + 4.0 * run->rounding.u);
+    return angle_error(run, "alpha") + angle_error(run, "beta") + angle_error(run, "gamma");
 }
 
 static void bound_sh(const stage_run *run, const assay_basis *basis, const double *matrix,
@@ -82,6 +87,65 @@ static void bound_sh(const stage_run *run, const assay_basis *basis, const doubl
         const double size = 2.0 * l + 1.0;
         const double turn = l * angles_error(run) + 5.0 * (size + 4.0) * sqrt(size) * r->u;
         bounds[i]         = carried + turn * sqrt(squared) * (1.0 + r->given) + r->tiny * size;
+    }
+}
+
+/* What turns of HSH are bounded by. */
+typedef struct {
+    turn_bound *bound;
+    double     *norms, *slopes; /* pairs * pairs        */
+    double     *rows;           /* 3 of pairs, 1 of all */
+} hsh_turn;
+
+static assay_status open_hsh(const stage_run *run, const assay_basis *basis, const double *matrix,
+                             hsh_turn *turn)
+{
+    const assay_radiance_turn_settings settings = {.way = ASSAY_HSH_EXACT};
+    const size_t                       count    = assay_basis_count(basis);
+    assay_status status = turn_bound_create(run->context, basis, NULL, &settings, &turn->bound);
+    if (status != ASSAY_OK) {
+        return status;
+    }
+    const size_t pairs = turn_bound_pairs(turn->bound);
+    turn->norms        = assay_allocate(run->context, pairs * pairs, sizeof *turn->norms);
+    turn->slopes       = assay_allocate(run->context, pairs * pairs, sizeof *turn->slopes);
+    turn->rows         = assay_allocate(run->context, 3 * pairs + count, sizeof *turn->rows);
+    if (!turn->norms || !turn->slopes || !turn->rows) {
+        return assay_fail_memory(run->context, "bounds of a rotation");
+    }
+    turn_bound_norms(turn->bound, matrix, turn->norms);
+    turn_bound_slopes(turn->bound, turn->slopes);
+    return ASSAY_OK;
+}
+
+static void close_hsh(const stage_run *run, hsh_turn *turn)
+{
+    turn_bound_destroy(turn->bound);
+    assay_release(run->context, turn->norms);
+    assay_release(run->context, turn->slopes);
+    assay_release(run->context, turn->rows);
+}
+
+/* out: our own result. */
+static void bound_hsh(const stage_run *run, const hsh_turn *turn, size_t count, const double *in,
+                      const double *out, double *bounds)
+{
+    const rounding *r     = &run->rounding;
+    const size_t    pairs = turn_bound_pairs(turn->bound);
+    double         *sizes = turn->rows, *errors = sizes + pairs, *through = errors + pairs;
+    double         *given = through + pairs;
+    for (size_t i = 0; i < count; i++) {
+        given[i] = given_error(r, in[i]);
+    }
+    turn_bound_sizes(turn->bound, in, sizes);
+    turn_bound_sizes(turn->bound, given, errors);
+    turn_bound_spin_row(turn->bound, r, angle_error(run, "gamma"), sizes, errors);
+    turn_bound_product(turn->bound, r, turn->norms, turn->slopes, angle_error(run, "beta"), sizes,
+                       errors, through);
+    turn_bound_sizes(turn->bound, out, sizes);
+    turn_bound_spin_row(turn->bound, r, angle_error(run, "alpha"), sizes, through);
+    for (size_t i = 0; i < count; i++) {
+        bounds[i] = through[turn_bound_pair_of(turn->bound, i)];
     }
 }
 
@@ -114,8 +178,13 @@ static assay_status turn_rows(stage_run *run, const assay_basis *basis, const do
     const size_t  rows = run->in[IN].rows, count = assay_basis_count(basis);
     const bool    given  = run->in[MATRIX].values != NULL;
     const bool    sh     = assay_basis_kind_of(basis) == ASSAY_BASIS_SH;
+    const bool    hsh    = run->bounded && !given && !sh;
+    hsh_turn      turned = {0};
     stage_output *out    = NULL;
     assay_status  status = stage_output_make(run, 0, 0, rows, count, &out);
+    if (status == ASSAY_OK && hsh) {
+        status = open_hsh(run, basis, matrix, &turned);
+    }
     for (size_t i = 0; i < rows && status == ASSAY_OK; i++) {
         const double *in = run->in[IN].values + i * count;
         if (sh && !given) {
@@ -127,11 +196,11 @@ static assay_status turn_rows(stage_run *run, const assay_basis *basis, const do
             bound_product(&run->rounding, count, matrix, in, out->bounds + i * count);
         } else if (run->bounded && sh) {
             bound_sh(run, basis, matrix, in, out->bounds + i * count);
+        } else if (hsh && status == ASSAY_OK) {
+            bound_hsh(run, &turned, count, in, out->values + i * count, out->bounds + i * count);
         }
     }
-    if (status == ASSAY_OK && run->bounded && !given && !sh) {
-        stage_output_unknown(out);
-    }
+    close_hsh(run, &turned);
     return status;
 }
 

@@ -9,6 +9,7 @@
 #include "core/context.h"
 #include "core/parallel.h"
 #include "methods/cached_image.h"
+#include "oracle/splat_batches.h"
 #include "oracle/stage_camera.h"
 #include "oracle/stage_list.h"
 #include "oracle/stage_records.h"
@@ -20,14 +21,7 @@ enum { OUT_WEIGHT, OUT_RADIANCE };
 /* clang-format off */
 static const assay_param_desc PARAMS[] = {
     STAGE_RULE_PARAMS, STAGE_SAID_PARAMS,
-    {"splat_a", ASSAY_PARAM_REAL, "", "0", 0, 1e3, NULL,
-     "Accuracy of the last batch; 0: a.", "[gautron06] fig. 4.12"},
-    {"variant", ASSAY_PARAM_CHOICE, "", "corrected", 0, 0, "corrected|published",
-     "published: the last batch has the records of the first one twice.",
-     "[gautron06] algorithm 4"},
-    {"neighbour_clamp", ASSAY_PARAM_BOOL, "", "off", 0, 0, NULL,
-     "Records shrink while others are made: the last batch alone can be replayed.",
-     "[krivanek06]"},
+    STAGE_BATCH_PARAMS,
     {0}};
 
 static const assay_stage_array INPUTS[] = {
@@ -44,10 +38,9 @@ static const assay_stage_array OUTPUTS[] = {
     {0}};
 /* clang-format on */
 
-/* A batch: records [0, old) once more, and [0, end), at an accuracy. */
+/* A batch, and what comes of it. */
 typedef struct {
-    uint32_t      old, end;
-    double        a;
+    splat_batch   of;
     stage_output *weight, *radiance;
 } batch;
 
@@ -70,75 +63,42 @@ static bool has_point(const job_data *job, size_t pixel)
 
 /* ---- what the bundle says ---- */
 
-/* Normals: the frames' z, of pixels that have a point. */
 static assay_status take_points(job_data *job)
 {
-    stage_run         *run      = job->run;
-    const stage_table *position = &run->in[SPLAT_POSITION], *frame = &run->in[SPLAT_FRAME];
-    job->pixels  = position->rows;
-    job->normals = assay_allocate(run->context, job->pixels, sizeof *job->normals);
-    if (!job->normals) {
-        return assay_fail_memory(run->context, "a G-buffer");
+    stage_run *run = job->run;
+    job->pixels    = run->in[SPLAT_POSITION].rows;
+    return run->in[SPLAT_ALBEDO].rows != job->pixels
+               ? stage_fail_rows(run, SPLAT_ALBEDO, job->pixels,
+                                 "one a pixel, as of splat/position")
+               : stage_pixel_normals(run, SPLAT_POSITION, SPLAT_FRAME, &job->normals);
+}
+
+static assay_status make_outputs(job_data *job, const splat_batch *batches)
+{
+    job->batches = assay_allocate(job->run->context, job->batch_count, sizeof *job->batches);
+    if (!job->batches) {
+        return assay_fail_memory(job->run->context, "batches");
     }
-    const double allowed = fmax(1e-6, 4.0 * frame->roundoff);
-    for (int i = SPLAT_FRAME; i <= SPLAT_ALBEDO; i++) {
-        if (run->in[i].rows != job->pixels) {
-            return stage_fail_rows(run, i, job->pixels, "one a pixel, as of splat/position");
-        }
+    assay_status status = ASSAY_OK;
+    for (size_t k = 0; k < job->batch_count && status == ASSAY_OK; k++) {
+        batch *b = &job->batches[k];
+        b->of    = batches[k];
+        status = stage_output_make(job->run, OUT_WEIGHT, b->of.number, job->pixels, 1, &b->weight);
+        status = status ? status
+                        : stage_output_make(job->run, OUT_RADIANCE, b->of.number, job->pixels, 3,
+                                            &b->radiance);
     }
-    for (size_t i = 0; i < job->pixels; i++) {
-        const assay_vec3 p = stage_vec3(position->values + 3 * i);
-        if (!has_point(job, i)) {
-            continue;
-        }
-        job->normals[i] = stage_vec3(frame->values + 9 * i + 6);
-        if (!vec3_finite(p)) {
-            return stage_fail_value(run, SPLAT_POSITION, i, 0, "not a position");
-        }
-        if (!(fabs(vec3_length(job->normals[i]) - 1.0) <= allowed)) {
-            return stage_fail_value(run, SPLAT_FRAME, i, 6, "a vector that is not of unit length");
-        }
-    }
-    return ASSAY_OK;
+    return status;
 }
 
 static assay_status take_batches(job_data *job)
 {
-    stage_run         *run     = job->run;
-    const stage_table *ends    = &run->in[SPLAT_ENDS];
-    const size_t       count   = ends->values ? ends->rows : 1;
-    const double       splat_a = assay_params_real(run->params, "splat_a");
-    const bool         twice   = assay_params_choice(run->params, "variant") == 1;
-    const bool         shrinks = assay_params_bool(run->params, "neighbour_clamp");
-    job->batches               = assay_allocate(run->context, count, sizeof *job->batches);
-    if (!job->batches) {
-        return assay_fail_memory(run->context, "batches");
-    }
-    double before = 0.0;
-    for (size_t k = 0; k < count; k++) {
-        const double end  = ends->values ? ends->values[k] : (double)job->records->count;
-        const bool   last = k + 1 == count;
-        if (!(end >= before && end <= (double)job->records->count && end == assay_floor(end))) {
-            return stage_fail_value(run, SPLAT_ENDS, k, 0,
-                                    "not a number of records, no less than the one before");
-        }
-        before = end;
-        if (last || !shrinks) {
-            batch *b = &job->batches[job->batch_count++];
-            b->end   = (uint32_t)end;
-            b->old   = last && twice && ends->values ? (uint32_t)ends->values[0] : 0;
-            b->a     = last && splat_a > 0.0 ? splat_a : job->records->rules.a;
-            assay_status status =
-                stage_output_make(run, OUT_WEIGHT, (int)k, job->pixels, 1, &b->weight);
-            status =
-                status ? status
-                       : stage_output_make(run, OUT_RADIANCE, (int)k, job->pixels, 3, &b->radiance);
-            if (status != ASSAY_OK) {
-                return status;
-            }
-        }
-    }
-    return ASSAY_OK;
+    splat_batch *batches = NULL;
+    assay_status status =
+        splat_batches_read(job->run, SPLAT_ENDS, job->records->count, &batches, &job->batch_count);
+    status = status ? status : make_outputs(job, batches);
+    assay_release(job->run->context, batches);
+    return status;
 }
 
 /* ---- values ---- */
@@ -194,14 +154,14 @@ static assay_status splat_batches(job_data *job)
     assay_status       status = ASSAY_OK;
     for (size_t k = 0; k < job->batch_count && status == ASSAY_OK; k++) {
         const batch *b = &job->batches[k];
-        if (b->a != source.rules.a || b->old > 0) {
-            source.rules.a = b->a;
+        if (b->of.a != source.rules.a || b->of.old > 0) {
+            source.rules.a = b->of.a;
             assay_splat_buffer_clear(job->buffer);
-            status = assay_splat_records(job->buffer, &source, 0, b->old);
+            status = assay_splat_records(job->buffer, &source, 0, b->of.old);
             done   = 0;
         }
-        status = status ? status : assay_splat_records(job->buffer, &source, done, b->end);
-        done   = b->end;
+        status = status ? status : assay_splat_records(job->buffer, &source, done, b->of.end);
+        done   = b->of.end;
         take_sums(job, b);
     }
     return status;
@@ -233,15 +193,15 @@ static assay_status bound_pixel(const job_data *job, const batch *b, size_t pixe
     const assay_vec3   p     = stage_vec3(job->run->in[SPLAT_POSITION].values + 3 * pixel);
     const assay_vec3   n     = job->normals[pixel];
     pixel_sums         sums  = {0};
-    rules.a                  = b->a;
-    for (size_t i = 0; i < near->count && near->items[i] < b->end; i++) {
+    rules.a                  = b->of.a;
+    for (size_t i = 0; i < near->count && near->items[i] < b->of.end; i++) {
         const assay_record *record = &job->records->records[near->items[i]];
         const weight_bound  w = record_weight_bound(r, job->records->exact, record, &rules, p, n);
         if (w.member != BOUND_OUT) {
             tracked      said[3];
             const double counts = assay_record_weight(record, &rules, p, n);
             record_said_bound(r, job->records->exact, record, &rules, p, n, said);
-            for (int times = near->items[i] < b->old ? 2 : 1; times > 0; times--) {
+            for (int times = near->items[i] < b->of.old ? 2 : 1; times > 0; times--) {
                 add_term(r, &sums, &w, counts, said);
             }
         }
@@ -287,9 +247,9 @@ static assay_status bound_all(job_data *job)
     if (!job->near || !job->walks) {
         return assay_fail_memory(run->context, "pixels");
     }
-    const assay_status status =
-        stage_records_index(job->records, &run->rounding, job->pixels,
-                            run->in[SPLAT_POSITION].values, job->batches[job->batch_count - 1].a);
+    const assay_status status = stage_records_index(job->records, &run->rounding, job->pixels,
+                                                    run->in[SPLAT_POSITION].values,
+                                                    job->batches[job->batch_count - 1].of.a);
     return status ? status
                   : assay_parallel_for(run->context, NULL, (job->pixels + CHUNK - 1) / CHUNK,
                                        bound_pixels, job);

@@ -15,8 +15,7 @@ static const assay_param_desc PARAMS[] = {STAGE_RULE_PARAMS, {0}};
 
 static const assay_stage_array INPUTS[] = {
     STAGE_RECORD_SITE_ARRAYS,
-    {"query/position", "m", "X Y Z", "point", "where it is asked", false, false, false},
-    {"query/normal", "", "X Y Z", "point", "unit normal there", false, false, false},
+    STAGE_QUERY_ARRAYS,
     {"query/record", "records", "K", "point",
      "number of the record that is asked, from 0; without it all of them are", true, false, false},
     {0}};
@@ -40,8 +39,11 @@ static void weigh(const weights_job *job, size_t point, size_t record, size_t at
     const assay_record  *one      = &records->records[record];
     const assay_vec3     position = stage_vec3(job->run->in[QUERY_POSITION].values + 3 * point);
     const assay_vec3     normal   = job->normals[point];
-    const double         weight   = assay_record_weight(one, &records->rules, position, normal);
-    job->out->values[at]          = weight;
+    if (isnan(position.x)) {
+        return;
+    }
+    const double weight  = assay_record_weight(one, &records->rules, position, normal);
+    job->out->values[at] = weight;
     if (job->out->bounds) {
         const weight_bound w    = record_weight_bound(&job->run->rounding, records->exact, one,
                                                       &records->rules, position, normal);
@@ -85,13 +87,11 @@ static assay_status weigh_all(stage_run *run, stage_records *records)
     const size_t points  = run->in[QUERY_POSITION].rows;
     assay_vec3  *normals = NULL;
     weights_job  job     = {.run = run, .records = records};
-    for (int i = QUERY_NORMAL; i <= QUERY_RECORD; i++) {
-        if (run->in[i].values && run->in[i].rows != points) {
-            return stage_fail_rows(run, i, points, "one a point, as of query/position");
-        }
+    if (run->in[QUERY_RECORD].values && run->in[QUERY_RECORD].rows != points) {
+        return stage_fail_rows(run, QUERY_RECORD, points, "one a point, as of query/position");
     }
-    assay_status status  = check_pairs(run, records->count);
-    status               = status ? status : stage_unit_vectors(run, QUERY_NORMAL, 0, &normals);
+    assay_status status = check_pairs(run, records->count);
+    status = status ? status : stage_query_points(run, QUERY_POSITION, QUERY_NORMAL, 0, &normals);
     records->exact       = run->rounding.given <= run->rounding.u;
     const size_t columns = run->in[QUERY_RECORD].values || records->count == 0 ? 1 : records->count;
     status      = status ? status : stage_output_make(run, 0, 0, points, columns, &job.out);

@@ -54,11 +54,29 @@ static const assay_stage_array *reader_of(const assay_verdict       *verdict,
  * make of them.  Where no stage reads them either, they are looked at all the same. */
 static bool is_made_first(const char *array)
 {
-    static const char *const names[] = {
-        "records",          "radiance_records",       "splat/position",
-        "splat/frame",      "splat/geometric_normal", "splat/albedo",
-        "splat/footprint",  "splat/batch_end",        "splat/fate",
-        "splat_glossy/brdf"};
+    static const char *const names[] = {"records",
+                                        "radiance_records",
+                                        "query/position",
+                                        "query/normal",
+                                        "radiance_query/pixel",
+                                        "radiance_query/position",
+                                        "radiance_query/frame",
+                                        "splat/position",
+                                        "splat/frame",
+                                        "splat/geometric_normal",
+                                        "splat/albedo",
+                                        "splat/footprint",
+                                        "splat/batch_end",
+                                        "splat/fate",
+                                        "splat_glossy/position",
+                                        "splat_glossy/frame",
+                                        "splat_glossy/geometric_normal",
+                                        "splat_glossy/albedo",
+                                        "splat_glossy/footprint",
+                                        "splat_glossy/brdf",
+                                        "splat_glossy/lobe", /* and lobe_grid */
+                                        "splat_glossy/batch_end",
+                                        "splat_glossy/fate"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         if (strncmp(array, names[i], strlen(names[i])) == 0) {
             return true;

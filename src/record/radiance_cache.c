@@ -1,15 +1,10 @@
 /* radiance_cache.c - coefficients beside records, and asking for them.
  *
- * A record's frame is frame3_from_z of its normal, and so is the frame in which a point adds up
- * what its records say: where both have the same normal, as on all flat surfaces, nothing is
- * turned; the sum is turned about z into the frame that is wanted, once.
- *
  * Invariant: record k of the store has row k of coefficients and gradients.  A row is written
  * before its record is added, so that a record without a row never is. */
 #include "record/radiance_cache.h"
 
 #include <assert.h>
-#include <string.h>
 
 #include "core/alloc.h"
 #include "core/context.h"
@@ -180,70 +175,54 @@ const assay_vec3 *assay_radiance_cache_gradients(const assay_radiance_cache *cac
 
 /* ---- asking ---- */
 
-/* What the record says of the radiance at a position, in its own frame. */
-static void move(const assay_radiance_cache *cache, uint32_t number, const assay_frame3 *frame,
-                 assay_vec3 offset, double *moved)
+static assay_radiance_rows rows_of(const assay_radiance_cache *cache)
 {
-    const double     *c = cache->coefficients + number * cache->count;
-    const assay_vec3 *g =
-        assay_radiance_cache_has_gradients(cache) ? cache->gradients + number * cache->count : NULL;
-    const assay_vec3 local = frame3_to_local(frame, offset);
-    for (size_t i = 0; i < cache->count; i++) {
-        moved[i] = g ? c[i] + vec3_dot(g[i], local) : c[i];
-    }
+    return (assay_radiance_rows){
+        .count        = cache->count,
+        .coefficients = cache->coefficients,
+        .gradients    = assay_radiance_cache_has_gradients(cache) ? cache->gradients : NULL,
+        .turn         = cache->turn};
 }
 
-static bool same(assay_vec3 a, assay_vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+assay_radiance_rows assay_radiance_cache_rows(const assay_radiance_cache *cache)
+{
+    return rows_of(cache);
+}
 
 assay_status assay_radiance_cache_say(assay_radiance_cache *cache, uint32_t number,
                                       assay_vec3 position, const assay_frame3 *here, int worker,
                                       double *coefficients_out)
 {
-    const assay_record *record =
+    const assay_radiance_rows rows = rows_of(cache);
+    const assay_record       *record =
         assay_record_store_at(assay_irradiance_cache_store(cache->records), number);
-    const assay_frame3 there = frame3_from_z(record->normal);
-    move(cache, number, &there, vec3_sub(position, record->position), coefficients_out);
-    return assay_radiance_cache_turn(cache, &there, here, worker, coefficients_out);
+    return assay_radiance_rows_say(&rows, record, number, position, here, worker, coefficients_out);
 }
 
 assay_status assay_radiance_cache_turn(assay_radiance_cache *cache, const assay_frame3 *from,
                                        const assay_frame3 *to, int worker, double *coefficients)
 {
-    if (same(from->x, to->x) && same(from->y, to->y) && same(from->z, to->z)) {
-        return ASSAY_OK;
-    }
-    return assay_radiance_turn_apply(cache->turn, worker, from, to, coefficients);
+    const assay_radiance_rows rows = rows_of(cache);
+    return assay_radiance_rows_turn(&rows, from, to, worker, coefficients);
 }
 
 assay_status assay_radiance_cache_look_up(assay_radiance_cache *cache, assay_vec3 position,
                                           const assay_frame3 *frame, uint32_t limit, int worker,
                                           double *coefficients_out, bool *found_out)
 {
-    const assay_frame3         here  = frame3_from_z(frame->z);
+    const assay_radiance_rows  rows  = rows_of(cache);
     const assay_contributions *found = NULL;
-    double                    *sum   = cache->scratch + (size_t)worker * 2 * cache->count;
-    double                    *moved = sum + cache->count;
-    double                     total = 0.0;
     assay_status               status =
         assay_irradiance_cache_find(cache->records, position, frame->z, limit, worker, &found);
     if (status != ASSAY_OK || found->count == 0) {
         *found_out = status ? *found_out : false;
         return status;
     }
-    memset(sum, 0, cache->count * sizeof *sum);
-    for (size_t k = 0; k < found->count && status == ASSAY_OK; k++) {
-        const assay_contribution *item = &found->items[k];
-        status = assay_radiance_cache_say(cache, item->number, position, &here, worker, moved);
-        /* A running mean, as assay_record_store_interpolate has. */
-        total += item->weight;
-        const double share = item->weight / total;
-        for (size_t i = 0; i < cache->count; i++) {
-            sum[i] += share * (moved[i] - sum[i]);
-        }
-    }
-    status = status ? status : assay_radiance_cache_turn(cache, &here, frame, worker, sum);
+    status = assay_radiance_rows_mean(
+        &rows, assay_record_store_at(assay_irradiance_cache_store(cache->records), 0), found,
+        position, frame, worker, cache->scratch + (size_t)worker * 2 * cache->count,
+        coefficients_out);
     if (status == ASSAY_OK) {
-        memcpy(coefficients_out, sum, cache->count * sizeof *sum);
         *found_out = true;
     }
     return status;

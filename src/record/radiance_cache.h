@@ -9,6 +9,7 @@
 #define ASSAY_RECORD_RADIANCE_CACHE_H
 
 #include "record/irradiance_cache.h"
+#include "record/radiance_rows.h"
 
 typedef enum {
     ASSAY_COEFFICIENT_GRADIENT_NONE,
@@ -55,6 +56,9 @@ bool assay_radiance_cache_has_gradients(const assay_radiance_cache *cache);
  * coefficients, and where the cache has gradients 3 numbers a coefficient.  Errors: MEMORY. */
 assay_status assay_radiance_cache_take_rows(assay_radiance_cache *cache, size_t rows,
                                             const double *coefficients, const double *gradients);
+
+/* What the records say, for those who find them by themselves.  Borrowed until the next filling. */
+assay_radiance_rows assay_radiance_cache_rows(const assay_radiance_cache *cache);
 
 /* What one record says of the radiance at a point, 3 rows of count, in the frame `here`, whose z is
  * the normal there.  Errors: DOMAIN (no frame). */

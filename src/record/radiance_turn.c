@@ -178,6 +178,22 @@ static assay_status fill_table(assay_radiance_turn *t)
     return status;
 }
 
+double assay_radiance_turn_step(const assay_radiance_turn *turn, int step, double *matrix_out)
+{
+    const double *block = turn->table + (size_t)step * turn->block_size;
+    memset(matrix_out, 0, turn->count * turn->count * sizeof *matrix_out);
+    for (int parity = 0; parity < 2; parity++) {
+        const size_t  n     = parity ? turn->odd : turn->even;
+        const size_t *index = parity ? turn->index + turn->even : turn->index;
+        for (size_t j = 0; j < n; j++) {
+            for (size_t i = 0; i < n; i++) {
+                matrix_out[index[i] * turn->count + index[j]] = *block++;
+            }
+        }
+    }
+    return tilt_at(turn, step);
+}
+
 static assay_status prepare_way(assay_radiance_turn *t)
 {
     assay_status status = ASSAY_OK;

@@ -32,4 +32,8 @@ assay_status assay_radiance_turn_apply(assay_radiance_turn *turn, int worker,
                                        const assay_frame3 *from, const assay_frame3 *to,
                                        double *coefficients);
 
+/* For those who judge others' turns: matrix number `step` of TABLE, 0 ... steps, c' = M c, count *
+ * count of the basis; its tilt is returned, rad. */
+double assay_radiance_turn_step(const assay_radiance_turn *turn, int step, double *matrix_out);
+
 #endif

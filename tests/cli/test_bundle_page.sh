@@ -67,8 +67,9 @@ result $? "replay: to the bit"
 [ -f "$folder/again/splat/batch.1/radiance_bound.npy" ]
 result $? "replay: with bounds"
 run replay --help
-went_well && for word in irradiance weights interpolate splat normalise combine project rotate \
-    convert reflect records/position query/weight; do
+went_well && for word in irradiance weights interpolate interpolate-radiance splat splat-light \
+    splat-glossy splat-glossy-light normalise normalise-glossy combine project rotate convert \
+    reflect records/position query/weight radiance_records/coefficients splat_glossy/lobe_grid; do
     grep -q "$word" "$folder/stdout" || exit 1
 done
 result $? "replay: help lists the stages and their arrays"

@@ -17,6 +17,7 @@
 #include "support/measure.h"
 #include "support/near.h"
 #include "support/random_places.h"
+#include "support/splat_room.h"
 #include "support/stage_case.h"
 
 static const rounding FLOAT = {.u = 0x1p-24, .tiny = 0x1p-126, .given = 0x1p-24};
@@ -196,6 +197,69 @@ static void test_rounded_directions(void **state)
     }
 }
 
+/* ---- the last batch ---- */
+
+enum { LATE = 60, EARLY = 40, SPOTS = 8 * 8 };
+
+/* `records` of them in the bundle, of which the last batch has EARLY. */
+static void run_light(stage_case *c, size_t records)
+{
+    double       position[3 * LATE], normal[3 * LATE], radius[LATE], light[3 * LATE];
+    double       gradients[9 * LATE], at[3 * SPOTS], frame[9 * SPOTS] = {0.0}, albedo[3 * SPOTS];
+    double       weight[SPOTS];
+    const double end          = EARLY;
+    const assay_camera camera = splat_room_camera(false);
+    for (uint32_t k = 0; k < LATE; k++) {
+        const assay_record r = splat_room_record(3, LATE, k);
+        memcpy(position + 3 * (size_t)k, &r.position, 3 * sizeof *position);
+        memcpy(normal + 3 * (size_t)k, &r.normal, 3 * sizeof *normal);
+        memcpy(light + 3 * (size_t)k, &r.irradiance, 3 * sizeof *light);
+        memcpy(gradients + 9 * (size_t)k, r.translation, 9 * sizeof *gradients);
+        radius[k] = r.radius;
+    }
+    for (size_t i = 0; i < SPOTS; i++) {
+        assay_vec3 p = vec3(0.5, 0.25, 0.0), n = vec3(0.0, 0.0, 1.0);
+        splat_room_point(&camera, 8, 8, i, &p, &n);
+        memcpy(at + 3 * i, &p, sizeof p);
+        memcpy(frame + 9 * i + 6, &n, sizeof n);
+        weight[i] = 2.0;
+        for (size_t k = 0; k < 3; k++) {
+            albedo[3 * i + k] = 0.5;
+        }
+    }
+    stage_case_text(c, "a", "0.6");
+    stage_case_table(c, "records/position", "m", records, 3, position);
+    stage_case_table(c, "records/normal", "", records, 3, normal);
+    stage_case_table(c, "records/radius", "m", records, 1, radius);
+    stage_case_table(c, "records/irradiance", "W/m2", records, 3, light);
+    stage_case_table(c, "records/rotation_gradient", "W/(m2 rad)", records, 9, gradients);
+    stage_case_table(c, "records/translation_gradient", "W/m3", records, 9, gradients);
+    stage_case_table(c, "splat/position", "m", SPOTS, 3, at);
+    stage_case_table(c, "splat/frame", "", SPOTS, 9, frame);
+    stage_case_table(c, "splat/albedo", "", SPOTS, 3, albedo);
+    stage_case_table(c, "splat/batch.0/weight", "", SPOTS, 1, weight);
+    stage_case_table(c, "splat/batch_end", "records", 1, 1, &end);
+    stage_case_run(c, "splat-light", ASSAY_PRECISION_FLOAT);
+}
+
+/* Records that were made later change neither what is right nor how far from it is. */
+static void test_last_batch(void **state)
+{
+    stage_case some = stage_case_begin(*state), all = stage_case_begin(*state);
+    size_t     lit = 0;
+    run_light(&some, EARLY);
+    run_light(&all, LATE);
+    const stage_output *a = stage_case_output(&some, "splat/batch.0/radiance");
+    const stage_output *b = stage_case_output(&all, "splat/batch.0/radiance");
+    for (size_t i = 0; i < (size_t)3 * SPOTS; i++) {
+        lit += a->values[i] > 0.0;
+        assert_true(a->values[i] == b->values[i] && a->bounds[i] == b->bounds[i]);
+    }
+    assert_true(lit > SPOTS);
+    stage_case_end(&some);
+    stage_case_end(&all);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -205,6 +269,7 @@ int main(void)
         cmocka_unit_test(test_margin),
         cmocka_unit_test_setup_teardown(test_flat_hemisphere, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_rounded_directions, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_last_batch, context_set_up, context_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

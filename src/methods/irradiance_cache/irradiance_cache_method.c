@@ -6,6 +6,7 @@
 #include "core/context.h"
 #include "core/numerics.h"
 #include "methods/cache_params.h"
+#include "methods/cache_queries.h"
 #include "methods/cache_session.h"
 
 static const assay_param_desc PARAMS[] = {
@@ -140,7 +141,7 @@ static assay_status render(void *state, const assay_frame *frame, assay_film *fi
     if (status == ASSAY_OK) {
         report(s);
     }
-    return status;
+    return status || !frame->dump ? status : assay_cache_queries_add(frame, &caches, NULL);
 }
 
 const assay_method assay_method_irradiance_cache = {

@@ -11,6 +11,7 @@
 #include "core/numerics.h"
 #include "methods/cache_pair.h"
 #include "methods/cache_params.h"
+#include "methods/cache_queries.h"
 #include "methods/cache_session.h"
 
 static const assay_param_desc PARAMS[] = {ASSAY_CACHE_PARAMS,
@@ -321,7 +322,8 @@ static assay_status render(void *state, const assay_frame *frame, assay_film *fi
     if (status == ASSAY_OK) {
         report(s);
     }
-    return status;
+    return status || !frame->dump ? status
+                                  : assay_cache_queries_add(frame, &caches, &s->pair.materials);
 }
 
 const assay_method assay_method_radiance_cache = {

@@ -7,6 +7,7 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/numerics.h"
+#include "methods/splat/splat_lobes.h"
 
 enum { WHAT_SIZE = 64, NAME_SIZE = 128, BRDF_COLUMNS = 15 };
 
@@ -125,6 +126,7 @@ assay_status splat_dump_begin(const splat_image *image, const splat_layer *layer
     status = status ? status : add_table(&dump, "albedo", "", 3, write_albedo);
     if (status == ASSAY_OK && layer->source.say) {
         status = add_table(&dump, "brdf", "", BRDF_COLUMNS, write_brdf);
+        status = status ? status : splat_lobes_add(image, layer, name);
     }
     if (status == ASSAY_OK) {
         *dump_out = dump;

@@ -119,6 +119,11 @@ void splat_gloss_get(const splat_gloss *gloss, size_t pixel, assay_frame3 *frame
     *base_color_out = gloss->pixels[pixel].base_color;
 }
 
+const assay_material_grids *splat_gloss_grids(const splat_gloss *gloss, size_t pixel)
+{
+    return gloss->pixels[pixel].grids;
+}
+
 static double dot(size_t count, const double *a, const double *b)
 {
     double sum = 0.0;

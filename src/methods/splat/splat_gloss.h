@@ -24,6 +24,9 @@ void splat_gloss_set(splat_gloss *gloss, size_t pixel, const assay_material_grid
 void splat_gloss_get(const splat_gloss *gloss, size_t pixel, assay_frame3 *frame_out,
                      assay_vec3 *wo_out, assay_rgb *base_color_out);
 
+/* And the grids of its material. */
+const assay_material_grids *splat_gloss_grids(const splat_gloss *gloss, size_t pixel);
+
 /* Of a splat source, whose user is the gloss. */
 assay_status splat_gloss_say(void *user, const assay_splat_place *place, uint32_t record,
                              assay_rgb *said_out);
