@@ -56,6 +56,14 @@ run verify "$folder/wrong" --reference "$folder/dump"
 [ "$code" -eq 1 ] && grep -q 'First stage that fails: normalise.*Its inputs pass: the error is made in this stage' \
     "$folder/stdout"
 result $? "a stage of right inputs is to blame"
+"$assay" verify "$folder/wrong" -q --json "$folder/wrong.json"
+for bundle in wrong dump; do
+    accepts "a report on $bundle" report "$folder/$bundle" --reference "$folder/a.exr" -q \
+        --verdict "$folder/wrong.json" -o "$folder/$bundle.html"
+done
+! grep -q '"otherPixels":' "$folder/wrong.html" &&
+    grep -q "\"otherPixels\":.*'splat/result' in row 255 is 0.*in dump and .* in the verdict" "$folder/dump.html"
+result $? "which tells where the verdict is of another bundle"
 cp -r "$folder/dump" "$folder/dumped"
 spoil "$folder/dumped" splat/albedo
 run verify "$folder/dumped" --reference "$folder/dump"
