@@ -104,11 +104,11 @@ static void test_labels(void **state)
 {
     static const char *const PATHS[]  = {"x/ic.exr", "x/other.exr", "y/ic.exr", "ic.hdr", "y/z.ic"};
     static const char *const LABELS[] = {"ic.exr", "other", "ic.exr, 2", "ic.hdr", "z.ic"};
-    char                    *paths[5];
+    char                    *names[5];
     for (size_t i = 0; i < 5; i++) {
-        paths[i] = (char *)PATHS[i];
+        names[i] = (char *)PATHS[i];
     }
-    const assay_report_list list = {.candidates = paths, .count = 5};
+    const assay_report_list list = {.candidates = names, .count = 5};
     for (size_t i = 0; i < 5; i++) {
         char label[ASSAY_REPORT_LABEL_SIZE];
         assay_report_list_label(&list, i, label);
