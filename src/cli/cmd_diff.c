@@ -220,11 +220,13 @@ static assay_status measure_picture(diff_work *work)
     return status;
 }
 
-static bool is_exr(const char *path)
+static bool ends_with(const char *path, const char *extension)
 {
-    const size_t length = strlen(path);
-    return length >= 4 && strcasecmp(path + length - 4, ".exr") == 0;
+    const size_t length = strlen(path), end = strlen(extension);
+    return length >= end && strcasecmp(path + length - end, extension) == 0;
 }
+
+static bool is_exr(const char *path) { return ends_with(path, ".exr"); }
 
 static assay_status write_heat_map(diff_work *work)
 {
@@ -292,10 +294,12 @@ static int check_map(const diff_request *r, const char *option, const char *path
 {
     int code = cli_check_not_input("diff", path, r->paths[0]);
     code     = code ? code : cli_check_not_input("diff", path, r->paths[1]);
-    if (!code && !is_exr(path)) {
-        code = cli_check_extension("diff", option, path, ".png");
+    code     = code ? code : cli_check_file("diff", path);
+    if (!code && !is_exr(path) && !ends_with(path, ".png") && !cli_is_device(path)) {
+        cli_complain("diff", "%s %s: a map is .png or .exr; name it so", option, path);
+        return CLI_EXIT_USAGE;
     }
-    return code ? code : cli_check_file("diff", path);
+    return code;
 }
 
 /* What the options say together; NULL, or what is wrong. */

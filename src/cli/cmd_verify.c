@@ -16,6 +16,7 @@ typedef struct {
     assay_verify_options options;
     uint64_t             memory_limit;
     bool                 annotations, list, quiet, help;
+    bool                 noise; /* an option was given that is of images alone */
     long                 threads;
     cli_bundle_request   bundles;
 } verify_request;
@@ -184,10 +185,18 @@ static const char *take_output(verify_request *r, int index, const char *value)
     return add_candidate(r, value);
 }
 
+/* What would be without an effect on bundles. */
+static bool is_of_images(int index)
+{
+    return index >= OPT_CHANNELS && index <= OPT_IGNORE_METADATA && index != OPT_DETECT &&
+           index != OPT_PRECISION;
+}
+
 static const char *take(void *user, int index, const char *value)
 {
     verify_request       *r = user;
     assay_verify_options *o = &r->options;
+    r->noise                = r->noise || is_of_images(index);
     switch (index) {
     case OPT_REFERENCE: r->reference = value; return *value ? NULL : "the name is empty";
     case OPT_CANDIDATE: return add_candidate(r, value);
@@ -206,17 +215,6 @@ static const char *take(void *user, int index, const char *value)
     case OPT_IGNORE_METADATA: o->ignore_metadata = true; return NULL;
     default: return take_output(r, index, value);
     }
-}
-
-/* What would be without an effect on bundles. */
-static const char *check_bundle_options(const assay_verify_options *o)
-{
-    const bool noise = o->allow > 0.0 || o->allow_absolute > 0.0 || o->detect_tile > 0.0 ||
-                       o->candidate_samples || o->reference_samples || o->reference_exact;
-    return noise || o->channels || o->ignore_metadata
-               ? "--allow, --detect-tile, --samples, --reference-exact, --channels and "
-                 "--ignore-metadata go with images"
-               : NULL;
 }
 
 /* Each format is whole only where nothing else is written to the same place. */
@@ -245,7 +243,14 @@ static const char *check_together(const verify_request *r)
     if (!bundle && cli_is_bundle(r->reference)) {
         return "the reference is a bundle, the candidate is none that can be read";
     }
-    const char *problem = bundle ? check_bundle_options(&r->options) : NULL;
+    if (bundle && r->reference && cli_is_image(r->reference)) {
+        return "the candidate is a bundle, the reference is an image";
+    }
+    const char *problem =
+        bundle && r->noise
+            ? "--channels, --level, --correction, --tile, --allow, --detect-tile, --samples, "
+              "--reference-exact and --ignore-metadata go with images"
+            : NULL;
     problem = problem ? problem : cli_bundle_check(&r->bundles, r->count, r->candidates[0]);
     if (problem) {
         return problem;
@@ -296,16 +301,41 @@ static double judged_of(const assay_finding *f)
     return f->values ? 100.0 * (double)f->values / (double)(f->values + f->unjudged) : NAN;
 }
 
-static void print_findings(const assay_verdict *verdict)
+/* Columns of texts are as wide as the longest of them. */
+typedef struct {
+    int stage, array, test;
+} list_widths;
+
+static int wider(int width, size_t length) { return length > (size_t)width ? (int)length : width; }
+
+static size_t array_length(const assay_finding *f)
 {
-    printf("%-12s %-22s %-20s %-11s %10s %12s %12s %8s %10s\n", "stage", "array", "test", "verdict",
-           "in bounds", "effect", "visible", "judged %", "width");
+    return strlen(f->array) + (f->channel ? 1 + strlen(f->channel) : 0);
+}
+
+static list_widths widths_of(const assay_verdict *verdict)
+{
+    list_widths w = {(int)strlen("stage"), (int)strlen("array"), (int)strlen("test")};
     for (int i = 0; i < assay_verdict_count(verdict); i++) {
         const assay_finding f = assay_verdict_at(verdict, i);
-        printf("%-12s %s%s%-*s %-20s %-11s %10.4g %12.4g %12.4g %8.4g %10.3g\n", f.stage, f.array,
-               f.channel ? "." : "", (int)(22 - strlen(f.array)), f.channel ? f.channel : "",
-               f.test, assay_verdict_kind_text(f.kind), f.in_bounds, f.effect, f.visible,
-               judged_of(&f), f.width);
+        w.stage               = wider(w.stage, strlen(f.stage));
+        w.array               = wider(w.array, array_length(&f));
+        w.test                = wider(w.test, strlen(f.test));
+    }
+    return w;
+}
+
+static void print_findings(const assay_verdict *verdict)
+{
+    const list_widths w = widths_of(verdict);
+    printf("%-*s  %-*s  %-*s  %-11s %10s %12s %12s %8s %10s\n", w.stage, "stage", w.array, "array",
+           w.test, "test", "verdict", "in bounds", "effect", "visible", "judged %", "width");
+    for (int i = 0; i < assay_verdict_count(verdict); i++) {
+        const assay_finding f = assay_verdict_at(verdict, i);
+        printf("%-*s  %s%s%s%*s  %-*s  %-11s %10.4g %12.4g %12.4g %8.4g %10.3g\n", w.stage, f.stage,
+               f.array, f.channel ? "." : "", f.channel ? f.channel : "",
+               w.array - (int)array_length(&f), "", w.test, f.test, assay_verdict_kind_text(f.kind),
+               f.in_bounds, f.effect, f.visible, judged_of(&f), f.width);
     }
 }
 

@@ -1,4 +1,4 @@
-/* verify_bundles.c - a folder is taken for a bundle, all else for an image. */
+/* verify_bundles.c - a folder is taken for a bundle, any other file for an image. */
 #include "verify_bundles.h"
 
 #include <math.h>
@@ -13,6 +13,12 @@ bool cli_is_bundle(const char *path)
 {
     struct stat info;
     return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
+bool cli_is_image(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && !S_ISDIR(info.st_mode);
 }
 
 const char *cli_bundle_check(const cli_bundle_request *request, int count, const char *candidate)

@@ -16,6 +16,8 @@ typedef struct {
 
 /* Whether the path is a folder. */
 bool cli_is_bundle(const char *path);
+/* Whether there is something of this name that is no folder. */
+bool cli_is_image(const char *path);
 
 /* What the options say together with so many candidates, the first of them named; NULL, or what is
  * wrong. */

@@ -27,6 +27,15 @@ typedef struct {
 /* The error of the library's result, with its first message. */
 assay_status assay_exr_fail(const exr_job *job, exr_result_t result, const char *where);
 
+/* ---- exr_colour.c ---- */
+
+enum { ASSAY_EXR_COLOUR_NAME = 32, ASSAY_EXR_COLOUR_VALUE = 160 };
+
+/* The attributes chromaticities ("0.64 0.33 ...": x and y of red, green, blue and white) and
+ * acesImageContainerFlag as texts, "exr:" before their names; false of any other. */
+bool assay_exr_colour_text(const exr_attribute_t *attribute, char name_out[ASSAY_EXR_COLOUR_NAME],
+                           char value_out[ASSAY_EXR_COLOUR_VALUE]);
+
 /* ---- exr_chunks.c ---- */
 
 /* All pixels, into the targets.  Errors: FORMAT, MEMORY, UNSUPPORTED. */

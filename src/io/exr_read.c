@@ -212,15 +212,19 @@ static assay_status take_attributes(exr_job *job)
     int32_t count = 0;
     exr_get_attribute_count(job->exr, 0, &count);
     for (int32_t i = 0; i < count; i++) {
+        char                   colour[ASSAY_EXR_COLOUR_NAME], text[ASSAY_EXR_COLOUR_VALUE];
         const exr_attribute_t *attribute = NULL;
+        assay_status           status    = ASSAY_OK;
         if (exr_get_attribute_by_index(job->exr, 0, EXR_ATTR_LIST_FILE_ORDER, i, &attribute) !=
-                EXR_ERR_SUCCESS ||
-            attribute->type != EXR_ATTR_STRING || !attribute->string->str ||
-            assay_image_attribute_reserved(attribute->name)) {
+            EXR_ERR_SUCCESS) {
             continue;
         }
-        const assay_status status =
-            assay_image_set_attribute(job->image, attribute->name, attribute->string->str);
+        if (assay_exr_colour_text(attribute, colour, text)) {
+            status = assay_image_set_attribute(job->image, colour, text);
+        } else if (attribute->type == EXR_ATTR_STRING && attribute->string->str &&
+                   !assay_image_attribute_reserved(attribute->name)) {
+            status = assay_image_set_attribute(job->image, attribute->name, attribute->string->str);
+        }
         if (status != ASSAY_OK) {
             return as_format_error(job, status);
         }

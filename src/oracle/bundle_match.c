@@ -47,6 +47,18 @@ static bool same_text(const char *a, const char *b)
     return true;
 }
 
+/* Why a text that is wanted is none. */
+static const char *lack_of(const assay_bundle_reader *reader, const char *key)
+{
+    const char *value = NULL;
+    for (int i = 0; i < assay_bundle_text_count(reader); i++) {
+        if (strcmp(assay_bundle_text_at(reader, i, &value), key) == 0) {
+            return "no text";
+        }
+    }
+    return "missing";
+}
+
 assay_status bundle_match_making(assay_context *context, const assay_bundle_reader *candidate,
                                  const assay_bundle_reader *reference)
 {
@@ -57,11 +69,18 @@ assay_status bundle_match_making(assay_context *context, const assay_bundle_read
             continue;
         }
         const char *found = assay_bundle_text(candidate, key);
-        if (!found || !same_text(found, wanted)) {
+        if (!found) {
+            return assay_fail(context, ASSAY_ERR_ARGUMENT,
+                              "%s: bundle: of another making than %s: '%s' is %s, there it is "
+                              "'%.80s'",
+                              assay_bundle_path(candidate), assay_bundle_path(reference), key,
+                              lack_of(candidate, key), wanted);
+        }
+        if (!same_text(found, wanted)) {
             return assay_fail(context, ASSAY_ERR_ARGUMENT,
                               "%s: bundle: of another making than %s: '%s' is '%.80s', not '%.80s'",
                               assay_bundle_path(candidate), assay_bundle_path(reference), key,
-                              found ? found : "missing", wanted);
+                              found, wanted);
         }
     }
     return ASSAY_OK;

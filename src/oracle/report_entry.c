@@ -11,6 +11,7 @@
 #include "core/numerics.h"
 #include "oracle/report_maps.h"
 #include "oracle/report_records.h"
+#include "oracle/report_stale.h"
 #include "scene/scene_text.h"
 
 enum { TEXT_SIZE = 4096 };
@@ -82,7 +83,8 @@ static assay_status describe_source(assay_report_text *text, const assay_report_
 {
     assay_report_histogram luminance;
     const char            *method = assay_report_source_method(source);
-    assay_report_put_text(text, "name", source->name);
+    assay_report_put_text(text, "name", source->label);
+    assay_report_put_text(text, "file", source->name);
     if (method) {
         put_clean(text, "method", method);
     }
@@ -277,8 +279,10 @@ assay_status assay_report_put_candidate(assay_report_writer       *writer,
             status ? status : describe_channels(writer->text, reference->image, candidate->image);
         describe_maps(writer->text, &maps, &look, &pictures);
         describe_appearance(writer->text, &look);
-        if (verdict) {
+        if (status == ASSAY_OK && verdict) {
             assay_report_put_json(writer->text, "verdict", verdict);
+            status = assay_report_stale_put(writer->context, writer->text, reference, candidate,
+                                            verdict);
         }
         close_entry(writer);
     }

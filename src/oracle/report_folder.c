@@ -170,6 +170,41 @@ assay_status assay_report_list_make(assay_context *context, const assay_report_o
     return ASSAY_OK;
 }
 
+/* "ic.exr" or "ic (bundle)". */
+static void name_with_kind(const char *path, char out[ASSAY_REPORT_LABEL_SIZE])
+{
+    char        name[ASSAY_REPORT_NAME_SIZE];
+    const char *dot = strrchr(path, '.');
+    assay_report_name_of(path, name);
+    snprintf(out, ASSAY_REPORT_LABEL_SIZE, "%s%.16s", name,
+             assay_report_is_bundle(path)                                    ? " (bundle)"
+             : dot && (strcmp(dot, ".exr") == 0 || strcmp(dot, ".hdr") == 0) ? dot
+                                                                             : "");
+}
+
+void assay_report_list_label(const assay_report_list *list, size_t index,
+                             char label_out[ASSAY_REPORT_LABEL_SIZE])
+{
+    char   mine[ASSAY_REPORT_NAME_SIZE], kind[ASSAY_REPORT_LABEL_SIZE];
+    size_t same = 0, before = 0;
+    assay_report_name_of(list->candidates[index], mine);
+    name_with_kind(list->candidates[index], kind);
+    for (size_t i = 0; i < list->count; i++) {
+        char name[ASSAY_REPORT_NAME_SIZE], other[ASSAY_REPORT_LABEL_SIZE];
+        assay_report_name_of(list->candidates[i], name);
+        name_with_kind(list->candidates[i], other);
+        same += strcmp(name, mine) == 0;
+        before += i < index && strcmp(other, kind) == 0;
+    }
+    if (same == 1) {
+        snprintf(label_out, ASSAY_REPORT_LABEL_SIZE, "%s", mine);
+    } else if (before == 0) {
+        snprintf(label_out, ASSAY_REPORT_LABEL_SIZE, "%s", kind);
+    } else {
+        snprintf(label_out, ASSAY_REPORT_LABEL_SIZE, "%.272s, %d", kind, (int)before + 1);
+    }
+}
+
 void assay_report_list_release(assay_context *context, assay_report_list *list)
 {
     for (size_t i = 0; list->candidates && i < list->count; i++) {

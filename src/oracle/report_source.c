@@ -38,8 +38,7 @@ bool assay_report_is_bundle(const char *path)
     return stat(manifest, &info) == 0;
 }
 
-/* The last part of the path, without ".exr", fit for one line. */
-static void take_name(const char *path, char name[ASSAY_REPORT_NAME_SIZE])
+void assay_report_name_of(const char *path, char name_out[ASSAY_REPORT_NAME_SIZE])
 {
     char copy[ASSAY_REPORT_PATH_SIZE];
     snprintf(copy, sizeof copy, "%s", path);
@@ -53,7 +52,7 @@ static void take_name(const char *path, char name[ASSAY_REPORT_NAME_SIZE])
     if (dot && dot > last && (strcmp(dot, ".exr") == 0 || strcmp(dot, ".hdr") == 0)) {
         *dot = '\0';
     }
-    assay_text_clean(last, name, ASSAY_REPORT_NAME_SIZE);
+    assay_text_clean(last, name_out, ASSAY_REPORT_NAME_SIZE);
 }
 
 static assay_status read_image(assay_context *context, assay_report_source *source)
@@ -190,7 +189,8 @@ assay_status assay_report_source_read(assay_context *context, const char *path,
     if (snprintf(source.path, sizeof source.path, "%s", path) >= (int)sizeof source.path) {
         return assay_fail(context, ASSAY_ERR_ARGUMENT, "%.64s...: the name is too long", path);
     }
-    take_name(path, source.name);
+    assay_report_name_of(path, source.name);
+    snprintf(source.label, sizeof source.label, "%s", source.name);
     assay_status status =
         assay_report_is_bundle(path) ? read_bundle(context, &source) : read_image(context, &source);
     status = status ? status : check_channels(context, &source);

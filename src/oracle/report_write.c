@@ -122,15 +122,17 @@ static assay_status check_size(assay_context *context, const assay_report_source
         b->path, assay_image_width(b->image), assay_image_height(b->image), a->path, width, height);
 }
 
-static assay_status put_candidate(report *r, const assay_report_source *reference, const char *path)
+static assay_status put_candidate(report *r, const assay_report_source *reference, size_t index)
 {
     assay_context      *context   = r->writer.context;
     assay_report_source candidate = {.image = NULL};
+    const char         *path      = r->list.candidates[index];
     const char         *verdict   = NULL;
     char               *own       = NULL;
     assay_status        status    = assay_report_source_read(context, path, &candidate);
     status                        = status ? status : check_size(context, reference, &candidate);
     if (status == ASSAY_OK) {
+        assay_report_list_label(&r->list, index, candidate.label);
         status = assay_report_verdict_find(context, path, r->list.count == 1, r->verdicts,
                                            r->verdict_count, &verdict, &own);
     }
@@ -167,7 +169,7 @@ static assay_status put_page(report *r, const assay_report_options *options)
     }
     for (size_t i = 0; status == ASSAY_OK && i < r->list.count; i++) {
         status = assay_progress(context, "report", i, r->list.count);
-        status = status ? status : put_candidate(r, &reference, r->list.candidates[i]);
+        status = status ? status : put_candidate(r, &reference, i);
     }
     status = status ? status : assay_progress(context, "report", r->list.count, r->list.count);
     status = status ? status : check_verdicts(r);

@@ -150,9 +150,12 @@ static void add_head(assay_text_builder *text, const assay_verdict *verdict)
 /* What a pass is worth. */
 static void add_worth(assay_text_builder *text, const assay_verdict *verdict)
 {
-    const char *worth = assay_verdict_get(verdict, "power");
-    if (worth && *worth) {
-        assay_text_add(text, " %s", worth);
+    static const char *const SETTINGS[] = {"power", "variances"};
+    for (size_t i = 0; i < sizeof SETTINGS / sizeof SETTINGS[0]; i++) {
+        const char *worth = assay_verdict_get(verdict, SETTINGS[i]);
+        if (worth && *worth) {
+            assay_text_add(text, " %s", worth);
+        }
     }
 }
 

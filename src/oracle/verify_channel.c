@@ -123,13 +123,22 @@ static bool variance_known(const assay_noisy_channel *noisy, size_t pixels)
            !(zero && !noisy->count && noisy->samples == 0.0);
 }
 
-static bool check_reference(assay_verify_channel *channel, const assay_verify_options *options)
+static bool has_channel(const assay_image *image, const assay_verify_channel *channel)
+{
+    return assay_image_find_channel(image, channel->name, NULL);
+}
+
+static bool check_reference(const assay_image *reference, const assay_verify_options *options,
+                            assay_verify_channel *channel)
 {
     assay_noisy_channel *r      = &channel->pair.reference;
     const size_t         pixels = (size_t)channel->pair.width * (size_t)channel->pair.height;
     if (!r->mean) {
-        return refuse(channel, "channel", "The reference does not have this channel.", SIZE_MAX,
-                      NAN);
+        return refuse(channel, "channel",
+                      has_channel(reference, channel)
+                          ? "The reference's channel is not of floats: it is no mean."
+                          : "The reference does not have this channel.",
+                      SIZE_MAX, NAN);
     }
     if (options->reference_exact) {
         r->variance = NULL;
@@ -152,7 +161,10 @@ static assay_status take_runs(assay_context *context, const assay_image *const *
     for (int k = 0; k < count; k++) {
         runs[k] = find_float(candidates[k], "", channel->name);
         if (!runs[k]) {
-            refuse(channel, "channel", "A run of the candidate does not have this channel.",
+            refuse(channel, "channel",
+                   has_channel(candidates[k], channel)
+                       ? "The channel of a run of the candidate is not of floats: it is no mean."
+                       : "A run of the candidate does not have this channel.",
                    SIZE_MAX, NAN);
             return ASSAY_OK;
         }
@@ -234,7 +246,11 @@ static assay_status check_candidate(assay_context *context, const assay_image *c
     assay_noisy_channel *c      = &channel->pair.candidate;
     const size_t         pixels = (size_t)channel->pair.width * (size_t)channel->pair.height;
     if (!c->mean) {
-        refuse(channel, "channel", "The candidate does not have this channel.", SIZE_MAX, NAN);
+        refuse(channel, "channel",
+               has_channel(candidates[0], channel)
+                   ? "The candidate's channel is not of floats: it is no mean."
+                   : "The candidate does not have this channel.",
+               SIZE_MAX, NAN);
         return ASSAY_OK;
     }
     if (count > 1) {
@@ -256,7 +272,7 @@ assay_status assay_verify_channel_prepare(assay_context            *context,
 {
     find_pair(candidates, count, reference, options, channel);
     assay_status status = check_candidate(context, candidates, count, channel);
-    if (status != ASSAY_OK || channel->problem || !check_reference(channel, options)) {
+    if (status != ASSAY_OK || channel->problem || !check_reference(reference, options, channel)) {
         return status;
     }
     status = assay_tile_sums_make(context, &channel->pair, options->tile, &channel->sums);

@@ -12,6 +12,7 @@
 #include "oracle/verify_channels.h"
 #include "oracle/verify_judge.h"
 #include "oracle/verify_metadata.h"
+#include "oracle/verify_variance.h"
 
 assay_verify_options assay_verify_options_default(void)
 {
@@ -200,6 +201,10 @@ static assay_status describe(assay_verdict *verdict, int first, const assay_veri
         status = assay_verdict_set(
             verdict, "shared_seed",
             "the same random numbers in both make differences look smaller than they are");
+    }
+    /* Within an allowance a variance that is too large makes nothing pass. */
+    if (status == ASSAY_OK && !assay_judge_equivalence(o)) {
+        status = assay_verify_variances(verdict, channels, count);
     }
     return status ? status : describe_power(verdict, first, o->tile);
 }

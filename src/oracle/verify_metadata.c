@@ -5,7 +5,9 @@
  * message names the option. */
 #include "oracle/verify_metadata.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/context.h"
@@ -28,21 +30,67 @@ static const char *const LIGHT[] = {"assay:scene.files_digest",
                                     "assay:scene.digest"};
 
 /* Names under which other programs say what their colours are. */
-static const char *const COLOUR[] = {"oiio:ColorSpace", "colorSpace", "colorspace", "ColorSpace"};
+static const char *const COLOUR[] = {"oiio:ColorSpace", "colorSpace", "colorspace", "ColorSpace",
+                                     "colorInteropID"};
 
 /* What means linear light with the primaries of Rec. 709. */
 static const char *const LINEAR[] = {"Linear",          "linear",       "lin_srgb",
                                      "lin_rec709",      "scene_linear", "Linear Rec.709 (sRGB)",
                                      "lin_rec709_scene"};
 
+/* Of red, green, blue and white, x and y; white is D65 [bt709, section 1]. */
+static const double REC709[] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
+
+/* Writers round the white point in several ways; the next space of the same kind (Rec. 601, 625
+ * lines) differs by 0.01. */
+#define CHROMATICITY_TOLERANCE 0.002
+
+static bool is_rec709(const char *chromaticities)
+{
+    const char *at = chromaticities;
+    for (size_t i = 0; i < sizeof REC709 / sizeof REC709[0]; i++) {
+        char        *end   = NULL;
+        const double value = strtod(at, &end);
+        if (end == at || !(fabs(value - REC709[i]) <= CHROMATICITY_TOLERANCE)) {
+            return false;
+        }
+        at = end;
+    }
+    return true;
+}
+
+/* "unknown" is what the list of such names has for saying nothing. */
 static bool is_linear(const char *value)
 {
+    if (strcmp(value, "unknown") == 0) {
+        return true;
+    }
     for (size_t i = 0; i < sizeof LINEAR / sizeof LINEAR[0]; i++) {
         if (strcmp(value, LINEAR[i]) == 0) {
             return true;
         }
     }
     return false;
+}
+
+/* What an OpenEXR header says in other types than text (io/exr_colour.c).  Without chromaticities
+ * they are those of Rec. 709; an ACES container has primaries of its own. */
+static assay_status check_primaries(assay_context *context, const assay_image *image,
+                                    const char *whose)
+{
+    const char *primaries = assay_image_get_attribute(image, "exr:chromaticities");
+    const char *aces      = assay_image_get_attribute(image, "exr:acesImageContainerFlag");
+    if (primaries && !is_rec709(primaries)) {
+        return assay_fail(context, ASSAY_ERR_ARGUMENT,
+                          "the %s's attribute chromaticities is '%s': linear Rec. 709 is compared",
+                          whose, primaries);
+    }
+    return aces && strcmp(aces, "0") != 0
+               ? assay_fail(context, ASSAY_ERR_ARGUMENT,
+                            "the %s's attribute acesImageContainerFlag is %s: linear Rec. 709 is "
+                            "compared",
+                            whose, aces)
+               : ASSAY_OK;
 }
 
 static assay_status check_colour(assay_context *context, const assay_image *image,
@@ -56,7 +104,7 @@ static assay_status check_colour(assay_context *context, const assay_image *imag
                               COLOUR[i], value);
         }
     }
-    return ASSAY_OK;
+    return check_primaries(context, image, whose);
 }
 
 static assay_status check_same(assay_context *context, const assay_image *candidate,

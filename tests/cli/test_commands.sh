@@ -501,9 +501,11 @@ refuses "diff: a tone mapper without HDR" 2 "without HDR-FLIP" diff "$a" "$a" --
 refuses "diff: a map without FLIP" 2 "--flip-map" diff "$a" "$a" --flip none --flip-map "$out/f.png"
 refuses "diff: both maps in one file" 2 "the same file" diff "$a" "$a" --heat-map "$out/f.png" \
     --flip-map "$out/f.png"
-refuses "diff: a FLIP map in another format" 2 ".png" diff "$a" "$a" --flip-map "$out/f.jpg"
+for name in f.jpg f.tga f png f.exr.gz; do
+    refuses "diff: a FLIP map called $name" 2 "$name: a map is .png or .exr" diff "$a" "$a" --flip-map "$out/$name"
+    refuses "diff: a heat map called $name" 2 "$name: a map is .png or .exr" diff "$a" "$a" --heat-map "$out/$name"
+done
 refuses "diff: missing file" 2 "missing.exr" diff "$a" "$folder/missing.exr"
-refuses "diff: heat map in another format" 2 ".png" diff "$a" "$a" --heat-map "$out/h.jpg"
 refuses "diff: a scale of numbers" 2 "--scale" diff "$a" "$a" --scale 2 --heat-map "$out/h.exr"
 run diff "$a" "$b" --heat-map "$folder/heat.exr" --flip none
 "$assay" diff "$folder/heat.exr" "$folder/heat.exr" | grep -q '^RelativeError '

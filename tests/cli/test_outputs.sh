@@ -8,13 +8,13 @@ probe="render $box --quiet --spp 1 --points $folder/points.npy"
 plain="render $box $small"
 full="File too large"
 
-# Every kind of output under the name NAME. $1: what it is, $2: exit code, $3: word, $4: name.
+# Every kind of output. $1: what it is, $2: exit code, $3: word, $4: name, $5: that of a map.
 each_output() {
     refuses "image: $1" "$2" "$3" $plain -o "$4"
     refuses "preview: $1" "$2" "$3" $plain -o "$folder/whole.exr" --png "$4"
     refuses "statistics: $1" "$2" "$3" $plain -o "$folder/whole.exr" --stats "$4"
     refuses "table: $1" "$2" "$3" $probe -o "$4"
-    refuses "heat map: $1" "$2" "$3" diff "$folder/a.exr" "$folder/a.exr" --heat-map "$4"
+    refuses "heat map: $1" "$2" "$3" diff "$folder/a.exr" "$folder/a.exr" --heat-map "${5:-$4}"
 }
 
 accepts "an image to compare with" $plain -o "$folder/a.exr"
@@ -25,7 +25,7 @@ each_output "folder is a file" 3 "Not a directory" "$folder/a.exr/x"
 each_output "empty name" 2 "name of an output is empty" ""
 refuses "bundle: empty name" 2 "name of an output is empty" $plain -o "$folder/whole.exr" --dump ""
 each_output "name is too long" 3 "File name too long" \
-    "$folder/$(printf '%0300d' 0)"
+    "$folder/$(printf '%0300d' 0)" "$folder/$(printf '%0300d' 0).png"
 if [ "$(id -u)" -eq 0 ]; then
     skip "a read-only folder" "root can write everywhere"
     skip "a read-only file" "root can write everywhere"

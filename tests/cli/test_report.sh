@@ -76,17 +76,38 @@ cat > "$work/verdict.json" <<'VERDICT'
   "unjudged":3,"vacuous":0,"width":0.25,"width_90":0.5},
  {"stage":"image","array":"R","channel":null,"test":"tile","verdict":"fail","values":9,
   "place":{"x":3,"y":4,"width":8,"height":8},"candidate":1,"reference":2,
-  "candidate_hex":null,"reference_hex":null,"effect":1,"bound":1,"in_bounds":9,"ulps":1,"p":0.001,
+  "candidate_hex":"0x1p+9","reference_hex":null,"effect":1,"bound":1,"in_bounds":9,"ulps":1,"p":0.001,
   "log_p":-7,"visible":1,"meaning":"</td><img src=x onerror=hacked=1>"}]}
 VERDICT
 accepts "a folder: the path with the most samples is the reference" \
     report "$work/dir" -o "$work/all.html" -q --title '</title><script>hacked=1</script>"&'
 accepts "a bundle against an image, with a verdict" report "$work/dir/cache" --reference "$truth" \
     --verdict "$work/verdict.json" -o "$work/pair.html" -q
-sed 's/"fail"/"pass"/g; s/"first":1/"first":null/
+sed 's/"fail"/"pass"/g; s/"0x1p+9"/null/; s/"first":1/"first":null/
      s/"candidate":"c","reference":"r"/"candidate":"elsewhere\/cache","reference":"truth.exr"/' "$work/verdict.json" > "$work/pass.json"
 accepts "a verdict that passes" report "$work/dir/cache" --reference "$truth" --verdict "$work/pass.json" \
     -o "$work/pass.html" -q
+sed -i '/class="reference"/s/"samples":16,/"samples":1,/' "$work/pass.html"
+mkdir "$work/one"
+cp "$work/cache.exr" "$work/dir/four.exr" "$work/one"
+cp -r "$work/dir/cache" "$work/one/cache"
+"$assay" verify "$work/one/cache.exr" --reference "$truth" --allow 0.5 -q --json "$work/one/cache.verdict.json"
+accepts "an image and a bundle of one name" report "$work/one" "$work/dir/four.exr" --reference "$truth" \
+    -o "$work/named.html" -q
+[ "$(grep 'class="candidate"' "$work/named.html" | sed 's/.*{"name":"\([^"]*\)","file":"\([^"]*\)".*/\1|\2/')" = \
+    'cache (bundle)|cache
+cache.exr|cache
+four.exr|four
+four.exr, 2|four' ]
+result $? "candidates of one name are told apart"
+grep -q '"verdict":{"format' "$work/named.html" && ! grep -q '"otherPixels":' "$work/named.html"
+result $? "the verdict of an image is of its bundle's pixels, too"
+"$assay" render $box $tiny -m irradiance-cache --spp 1 --a 0.5 --theta-strata 4 --phi-strata 8 --seed 7 \
+    -o "$work/one/cache.exr"
+"$assay" report "$work/one" --reference "$truth" -o "$work/named.html" -q
+[ "$(grep 'class="candidate"' "$work/named.html" | grep -c '"name":"cache.exr".*"otherPixels":')" -eq 1 ] &&
+    [ "$(grep -c '"otherPixels":' "$work/named.html")" -eq 1 ]
+result $? "and no more those of an image that was rendered again"
 accepts "an image against itself" report "$truth" --reference "$truth" -o "$work/same.html" -q
 "$assay" report "$work/dir/cache" --reference "$truth" --verdict "$work/verdict.json" -o "$work/again.html" -q
 cmp -s "$work/pair.html" "$work/again.html"
@@ -193,6 +214,8 @@ all|s/^  drawConvergence();$//
 pair|s/=> f.unjudged > 0 ? .* : count/=> count/
 pair|s/Number.isFinite(f.width)/false/
 pair|s/^    numeric(format(f.p, 2)),$//
+pair|s/, \.\.\.(shown().otherPixels ?? \[\])//
+pass|s/reference.samples === 1 ? "sample"/false ? "sample"/
 all|s/<body>/<body><img src="https:\/\/example.org\/x.png" alt="">/
 TABLE
 browse $count

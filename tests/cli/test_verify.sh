@@ -84,14 +84,17 @@ for bad in "--level 0" "--level 0.5" "--level x" "--correction bonferroni" "--ti
     refuses "$bad" 2 "${bad%% *}" verify "$folder/same.exr" $truth $bad
 done
 mkdir "$folder/bundle"
-for option in "--allow 0.1" "--detect-tile 0.1" "--channels R" "--reference-exact" "--ignore-metadata"; do
+for option in "--allow 0.1" "--detect-tile 0.1" "--channels R" "--reference-exact" "--ignore-metadata" \
+    "--level 0.01" "--tile 16" "--correction holm" "--samples 4"; do
     refuses "${option%% *} of a bundle" 2 "go with images" verify "$folder/bundle" $option
 done
 refuses "a stage of images" 2 "--require goes with" verify "$folder/same.exr" $truth --require splat
 refuses "a part of images" 2 "--judged goes with" verify "$folder/same.exr" $truth --judged 0.9
 refuses "an image against a bundle" 2 "the reference is a bundle" verify "$folder/same.exr" \
     --reference "$folder/bundle"
-refuses "a bundle against an image" 2 "bundle/manifest.json" verify "$folder/bundle" $truth
+refuses "a bundle against an image" 2 "the candidate is a bundle, the reference is an image" \
+    verify "$folder/bundle" $truth
+refuses "a bundle against nothing" 2 "manifest.json" verify "$folder/bundle" --reference "$folder/none"
 refuses "a run twice" 2 "runs 1 and 2" verify "$folder/same.exr" "$folder/same.exr" $truth
 refuses "a channel twice" 2 "R is named twice" verify "$folder/same.exr" $truth --channels R,R
 refuses "an output in a folder that is not there" 3 "nowhere" verify "$folder/same.exr" $truth -q \

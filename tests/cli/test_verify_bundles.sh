@@ -21,6 +21,10 @@ ends() { # NAME CODE WORD ARGUMENT...
 ends "a pass says how many numbers were judged" 0 "numbers have a bound"
 ends "and how wide bounds are" 0 "Bounds are widest in splat/batch."
 ends "the list has both" 0 "judged %" --list
+run verify "$folder/dump" --reference "$folder/dump" --list
+[ "$(awk '/^PASS/ { exit } /^stage / { at = index($0, "verdict") }
+    { print match(substr($0, at - 2), /^  [pv]/) }' "$folder/stdout" | sort -u)" = 1 ]
+result $? "columns stand below their heads, whatever names are long"
 ends "what was not judged is named" 0 "Not judged: "
 ends "half precision passes" 0 "PASS: " --precision half
 ends "but not where more is asked for" 2 "of itself unseen, more than was asked for" --precision half \
@@ -52,6 +56,14 @@ run verify "$folder/wrong" --reference "$folder/dump"
 [ "$code" -eq 1 ] && grep -q 'First stage that fails: normalise.*Its inputs pass: the error is made in this stage' \
     "$folder/stdout"
 result $? "a stage of right inputs is to blame"
+"$assay" verify "$folder/wrong" -q --json "$folder/wrong.json"
+for bundle in wrong dump; do
+    accepts "a report on $bundle" report "$folder/$bundle" --reference "$folder/a.exr" -q \
+        --verdict "$folder/wrong.json" -o "$folder/$bundle.html"
+done
+! grep -q '"otherPixels":' "$folder/wrong.html" &&
+    grep -q "\"otherPixels\":.*'splat/result' in row 255 is 0.*in dump and .* in the verdict" "$folder/dump.html"
+result $? "which tells where the verdict is of another bundle"
 cp -r "$folder/dump" "$folder/dumped"
 spoil "$folder/dumped" splat/albedo
 run verify "$folder/dumped" --reference "$folder/dump"
@@ -64,6 +76,15 @@ run verify "$folder/moved" --scene "$box"
 [ "$code" -eq 1 ] && ! cmp -s "$folder/moved/manifest.json" "$folder/dump/manifest.json" &&
     grep -q 'fails: visible.*no inputs but scene and camera: the error is made in this stage' "$folder/stdout"
 result $? "a stage without inputs is to blame"
+
+cp -r "$folder/dump" "$folder/said"
+chmod u+w "$folder/said" "$folder/said/manifest.json"
+sed -i 's/"assay:seed":\(.*\)"0"/"assay:seed":\10/' "$folder/said/manifest.json"
+refuses "a text that is a number" 2 "'assay:seed' is no text, there it is '0'" \
+    verify "$folder/said" --reference "$folder/dump"
+sed -i '/"assay:seed"/d' "$folder/said/manifest.json"
+refuses "a text that is missing" 2 "'assay:seed' is missing, there it is '0'" \
+    verify "$folder/said" --reference "$folder/dump"
 
 for bad in "--judged 0.4" "--judged 1.1" "--judged x" "--detect 0" "--detect nan"; do
     refuses "$bad" 2 "${bad%% *}" verify "$folder/dump" $bad

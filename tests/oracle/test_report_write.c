@@ -99,10 +99,29 @@ static void test_folder(void **state)
     temporary_destroy(&t);
 }
 
+/* Bundles among them: tests/cli/test_report.sh. */
+static void test_labels(void **state)
+{
+    static const char *const PATHS[]  = {"x/ic.exr", "x/other.exr", "y/ic.exr", "ic.hdr", "y/z.ic"};
+    static const char *const LABELS[] = {"ic.exr", "other", "ic.exr, 2", "ic.hdr", "z.ic"};
+    char                    *names[5];
+    for (size_t i = 0; i < 5; i++) {
+        names[i] = (char *)PATHS[i];
+    }
+    const assay_report_list list = {.candidates = names, .count = 5};
+    for (size_t i = 0; i < 5; i++) {
+        char label[ASSAY_REPORT_LABEL_SIZE];
+        assay_report_list_label(&list, i, label);
+        assert_string_equal(label, LABELS[i]);
+    }
+    (void)state;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_memory, context_set_up, context_tear_down),
+        cmocka_unit_test(test_labels),
         cmocka_unit_test_setup_teardown(test_folder, context_set_up, context_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

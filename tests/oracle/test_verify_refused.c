@@ -59,6 +59,12 @@ static void missing_channels(void **state)
     expect_problem(*state, c, r, "R,G", "channel", "candidate does not have");
     normal_images_add(c, "G");
     expect_problem(*state, c, r, "R,G", "channel", "reference does not have");
+    assay_channel whole;
+    assert_int_equal(assay_image_add_channel(c, "Layer.R", ASSAY_CHANNEL_UINT, &whole), ASSAY_OK);
+    normal_images_add(r, "Layer.R");
+    expect_problem(*state, c, r, "SampleCount", "channel", "candidate's channel is not of floats");
+    expect_problem(*state, c, r, "R,Layer.R", "channel", "candidate's channel is not of floats");
+    expect_problem(*state, r, c, "R,Layer.R", "channel", "reference's channel is not of floats");
     /* Half a layer is no layer, a whole one may be left out. */
     expect_problem(*state, c, r, NULL, "channel", "reference does not have");
     expect_problem(*state, r, c, NULL, "channel", "candidate does not have");
@@ -226,6 +232,53 @@ static void metadata_of_methods(void **state)
     assay_image_destroy(r);
 }
 
+/* Each way in which an OpenEXR file tells its colours.  Rec. 709, with white in
+ * two roundings [bt709, section 1]; Rec. 601 of 625 lines, which has one primary 0.01 away; Display
+ * P3; ACES AP0. */
+static void colours_of_headers(void **state)
+{
+    static const struct {
+        const char *name, *value;
+        bool        fits;
+    } CASES[] = {
+        {"colorInteropID", "lin_rec709_scene", true},
+        {"colorInteropID", "unknown", true},
+        {"colorInteropID", "srgb_rec709_scene", false},
+        {"colorInteropID", "lin_ap1_scene", false},
+        {"colorInteropID", "data", false},
+        {"oiio:ColorSpace", "lin_rec709_scene", true},
+        {"exr:chromaticities", "0.64 0.33 0.3 0.6 0.15 0.06 0.3127 0.329", true},
+        {"exr:chromaticities", "0.64 0.33 0.3 0.6 0.15 0.06 0.31271 0.32902", true},
+        {"exr:chromaticities", "0.64 0.33 0.29 0.6 0.15 0.06 0.3127 0.329", false},
+        {"exr:chromaticities", "0.68 0.32 0.265 0.69 0.15 0.06 0.3127 0.329", false},
+        {"exr:chromaticities", "0.7347 0.2653 0 1 0.0001 -0.077 0.32168 0.33767", false},
+        {"exr:chromaticities", "0.64 0.33 0.3 0.6 0.15 0.06 0.3127 nan", false},
+        {"exr:chromaticities", "0.64 0.33", false},
+        {"exr:acesImageContainerFlag", "0", true},
+        {"exr:acesImageContainerFlag", "1", false},
+    };
+    for (size_t i = 0; i < 2 * sizeof CASES / sizeof CASES[0]; i++) {
+        assay_verify_options o = assay_verify_options_default();
+        assay_verdict       *v = NULL;
+        assay_image         *c = normal_images_make(*state, 9, 0.5, 64),
+                    *r         = normal_images_make(*state, 10, 0.5, 256);
+        const assay_image *k   = c;
+        assay_image_set_attribute(i % 2 ? c : r, CASES[i / 2].name, CASES[i / 2].value);
+        assert_int_equal(assay_verdict_create(*state, "c", "r", &v), ASSAY_OK);
+        assert_int_equal(assay_verify_images(&k, 1, r, &o, v),
+                         CASES[i / 2].fits ? ASSAY_OK : ASSAY_ERR_ARGUMENT);
+        if (!CASES[i / 2].fits) {
+            assert_non_null(strstr(assay_context_error(*state), CASES[i / 2].value));
+            assert_non_null(strstr(assay_context_error(*state), i % 2 ? "candidate" : "reference"));
+        }
+        o.ignore_metadata = true;
+        assert_int_equal(assay_verify_images(&k, 1, r, &o, v), ASSAY_OK);
+        assay_verdict_destroy(v);
+        assay_image_destroy(c);
+        assay_image_destroy(r);
+    }
+}
+
 static assay_status compare_runs(assay_context *context, void *user)
 {
     const assay_image *const  *images = user;
@@ -262,6 +315,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(refused, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(metadata, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(metadata_of_methods, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(colours_of_headers, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(every_refused_block, counted_set_up, counted_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

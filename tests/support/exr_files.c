@@ -68,6 +68,12 @@ static void define_part(exr_context_t exr, const exr_file_spec *spec, int index)
         check(exr_add_channel(exr, part, spec->channels[c].name, spec->channels[c].type,
                               EXR_PERCEPTUALLY_LOGARITHMIC, sampling, sampling));
     }
+    if (spec->chromaticities) {
+        check(exr_attr_set_chromaticities(exr, part, "chromaticities", spec->chromaticities));
+    }
+    if (spec->aces) {
+        check(exr_attr_set_int(exr, part, "acesImageContainerFlag", spec->aces));
+    }
     if (spec->deep) {
         check(exr_set_version(exr, part, 1));
     }

@@ -19,16 +19,18 @@ typedef struct {
 } exr_file_channel;
 
 typedef struct {
-    int               width, height; /* of the data window                        */
-    int               x, y;          /* its corner                                */
-    exr_attr_box2i_t  display;       /* all 0: the data window                    */
-    exr_compression_t compression;
-    int               tile_width, tile_height; /* 0: scan lines                   */
-    bool              mipmap;                  /* with all its levels               */
-    bool              deep;                    /* header alone                    */
-    int               parts;                   /* 0 stands for 1; equal contents  */
-    exr_file_channel  channels[EXR_FILE_CHANNELS];
-    int               channel_count;
+    int                              width, height; /* of the data window                        */
+    int                              x, y;          /* its corner                                */
+    exr_attr_box2i_t                 display;       /* all 0: the data window                    */
+    exr_compression_t                compression;
+    int                              tile_width, tile_height; /* 0: scan lines                   */
+    bool                             mipmap; /* with all its levels               */
+    bool                             deep;   /* header alone                    */
+    int                              parts;  /* 0 stands for 1; equal contents  */
+    exr_file_channel                 channels[EXR_FILE_CHANNELS];
+    int                              channel_count;
+    const exr_attr_chromaticities_t *chromaticities; /* NULL: none                */
+    int                              aces;           /* acesImageContainerFlag; 0: none */
 } exr_file_spec;
 
 /* Fails the test on any error.  Release with free. */

@@ -41,6 +41,7 @@
   function texts() {
     const title = $("title").textContent;
     check(isName(title) && document.title === `${title} - assay report`, "the title is the title");
+    check(!/\b1 samples/.test($("subtitle").textContent), "one sample is no samples");
     const intruders = "h1 *, #subtitle *, .thumb-name > :not(kbd), td script, td img, th img";
     check(all(intruders).length === 0, "no text became an element");
     const isMissing = (node) => node.nodeType === 3 && /\b(null|undefined|NaN|\[object)/.test(node.data);
@@ -236,6 +237,9 @@
     check(!seed || said.includes(`The same seed in both: ${seed}.`), "a shared seed is said");
     check(said.includes("the verdict is of ") === (verdictOf.candidate === "c"),
       "whose verdict it is is said where it is another's");
+    const { otherPixels = [] } = JSON.parse(document.querySelector("script.candidate").textContent);
+    check((otherPixels.length > 0) === (verdictOf.candidate === "c"), "other pixels are noticed");
+    check(otherPixels.every((text) => said.includes(text)), "and said");
     check(all("#findings tbody tr[id]").length > 0, "the stages are listed");
     const heads = all("#findings thead th").length;
     check(all("#findings tbody tr[id]").every((row) => row.cells.length === heads), "rows are whole");

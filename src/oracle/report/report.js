@@ -59,7 +59,7 @@ function sayHonestly() {
 function describePage() {
   $("title").textContent = page.title;
   const names = candidates.length === 1 ? candidates[0].name : `${candidates.length} candidates`;
-  const samples = reference.samples ? `${format(reference.samples)} samples a pixel` : null;
+  const samples = reference.samples ? `${format(reference.samples)} ${reference.samples === 1 ? "sample" : "samples"} a pixel` : null;
   const truth = [reference.method, samples].filter(Boolean).join(", ");
   const how = truth ? ` (${truth})` : "", size = `${WIDTH} × ${HEIGHT} pixels`;
   $("subtitle").textContent = `${names} against ${reference.name}${how} · ${size}`;

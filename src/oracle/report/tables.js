@@ -27,7 +27,7 @@ function buildVerdict() {
   section.replaceChildren(...[
     make("h2", { id: "verdict-heading" }, pill(verdict.verdict), " ", shown().name),
     make("p", {}, verdict.summary ?? ""),
-    ...othersOf(verdict).map((text) => make("p", { className: "caveat others" }, text)),
+    ...[...othersOf(verdict), ...(shown().otherPixels ?? [])].map((text) => make("p", { className: "caveat others" }, text)),
     ...caveatsOf(verdict).map((text) => make("p", { className: "caveat" }, text)),
     first ? linksTo(verdict, first) : null].filter(Boolean));
 }
@@ -38,8 +38,8 @@ const nameIn = (path) => String(path).replace(/ and \d+ more$/, "").replace(/\/+
 
 /* Whose verdict it is, where it names other files than the page shows. */
 function othersOf({ candidate, reference: truth = "its own inputs" }) {
-  const isTruth = truth === "its own inputs" || nameIn(truth) === reference.name;
-  const isThis = isTruth && nameIn(candidate) === shown().name;
+  const isTruth = truth === "its own inputs" || nameIn(truth) === reference.file;
+  const isThis = isTruth && nameIn(candidate) === shown().file;
   return isThis ? []
     : [`Here are ${shown().name} and ${reference.name}; the verdict is of ${candidate} against ${truth}.`];
 }
