@@ -1,6 +1,6 @@
-/* stage_points.c - Invariant: a vector is of unit length to 4e-7, which is within what a record store
- * asks of a length (1e-6) and a BRDF's grid of its square; how far it was from that when it was
- * stored is part of what is not known of it. */
+/* stage_points.c - Invariant: a vector is of unit length to 4e-7, which is within what a record
+ * store asks of a length (1e-6) and a BRDF's grid of its square; how far it was from that when it
+ * was stored is part of what is not known of it. */
 #include "oracle/stage_points.h"
 
 #include "core/alloc.h"
