@@ -350,7 +350,9 @@ static void print_caveats(const assay_verdict *verdict)
         printf("The same seed in both: %s.\n", seed);
     }
     if (blind) {
-        printf("Without a bound on any number in this precision: stage %s.\n", blind);
+        printf("Without a bound on any number in this precision and with these parameters: stage "
+               "%s.\n",
+               blind);
     }
     if (unjudged) {
         printf("Not judged: %s.\n", unjudged);

@@ -149,7 +149,9 @@ static exr_result_t read_chunk(chunk_reader *reader, const exr_chunk_info_t *chu
     }
     const uint64_t room = chunk->packed_size + 2 * expected;
     if (!assay_memory_charge(job->context, room)) {
-        job->refused = job->deaf ? ASSAY_OK : assay_memory_ask(job->context, room, job->name);
+        if (!job->deaf) { /* else other threads are here, too */
+            job->refused = assay_memory_ask(job->context, room, job->name);
+        }
         return EXR_ERR_OUT_OF_MEMORY;
     }
     const exr_result_t result = decode_chunk(reader, chunk);

@@ -1,7 +1,8 @@
 /* exr_write.c - OpenEXR through OpenEXRCore: scan lines, ZIP (16 lines a chunk), 32-bit samples.
  *
  * Invariant: the library never sees a file; what it writes goes to an atomic file, whose own error
- * is the one that is reported.  32-bit samples are kept bit for bit. */
+ * is the one that is reported.  32-bit samples are kept bit for bit, and a chunk is compressed only
+ * where that makes it smaller: every reader takes one of full size as it is. */
 #include <OpenEXR/openexr.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -101,11 +102,36 @@ static void point_at_rows(exr_encode_pipeline_t *encode, const assay_image *imag
     }
 }
 
+typedef exr_result_t (*compressor)(exr_encode_pipeline_t *);
+
+/* 3.1 keeps what compression has made as long as before, which nobody can tell from raw samples. */
+static exr_result_t compress(exr_encode_pipeline_t *encode)
+{
+    const compressor  *library = encode->encoding_user_data;
+    const exr_result_t result  = (*library)(encode);
+    if (result == EXR_ERR_SUCCESS && encode->compressed_bytes == encode->packed_bytes) {
+        memcpy(encode->compressed_buffer, encode->packed_buffer, encode->packed_bytes);
+    }
+    return result;
+}
+
+/* Routines are the first chunk's choice, and all others'. */
+static exr_result_t choose_routines(exr_context_t exr, exr_encode_pipeline_t *encode,
+                                    compressor *library)
+{
+    const exr_result_t result  = exr_encoding_choose_default_routines(exr, 0, encode);
+    *library                   = encode->compress_fn;
+    encode->encoding_user_data = library;
+    encode->compress_fn        = *library ? compress : NULL;
+    return result;
+}
+
 static exr_result_t write_pixels(exr_context_t exr, const assay_image *image)
 {
-    exr_encode_pipeline_t encode = EXR_ENCODE_PIPELINE_INITIALIZER;
-    int32_t               lines  = 0;
-    exr_result_t          result = exr_get_scanlines_per_chunk(exr, 0, &lines);
+    exr_encode_pipeline_t encode  = EXR_ENCODE_PIPELINE_INITIALIZER;
+    compressor            library = NULL;
+    int32_t               lines   = 0;
+    exr_result_t          result  = exr_get_scanlines_per_chunk(exr, 0, &lines);
     for (int y = 0; y < image->height && result == EXR_ERR_SUCCESS; y += lines) {
         exr_chunk_info_t chunk;
         result = exr_write_scanline_chunk_info(exr, 0, y, &chunk);
@@ -115,7 +141,7 @@ static exr_result_t write_pixels(exr_context_t exr, const assay_image *image)
         }
         if (result == EXR_ERR_SUCCESS) {
             point_at_rows(&encode, image, y);
-            result = y == 0 ? exr_encoding_choose_default_routines(exr, 0, &encode) : result;
+            result = y == 0 ? choose_routines(exr, &encode, &library) : result;
         }
         if (result == EXR_ERR_SUCCESS) {
             result = exr_encoding_run(exr, 0, &encode);

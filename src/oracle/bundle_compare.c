@@ -122,10 +122,11 @@ void bundle_compare_describe(const bundle_comparison *c, char *words, size_t siz
     case ASSAY_VERDICT_FAIL: describe_failure(c, words, size); break;
     case ASSAY_VERDICT_CANNOT_TELL:
         snprintf(words, size, "%s",
-                 c->count == 0          ? "The array is empty."
-                 : is_mostly_unknown(c) ? "Most of its values have no bound."
-                                        : "All bounds are as large as what they bound: this "
-                                          "precision decides nothing here.");
+                 c->count == 0 ? "The array is empty."
+                 : is_mostly_unknown(c)
+                     ? "Most of its values have no bound."
+                     : "All bounds are as large as what they bound: with so "
+                       "few digits, computed or stored, nothing is decided here.");
         break;
     case ASSAY_VERDICT_PASS: break;
     }

@@ -18,6 +18,9 @@ enum { TEXT_SIZE = 4096 };
 
 /* ---- what is known ---- */
 
+/* Where the page's scales of maps begin (report/colour.js); that of a difference is its floor. */
+static const double RELATIVE_SCALE = 0.25, Z_SCALE = 4.0, FLIP_SCALE = 1.0;
+
 static void put_clean(assay_report_text *text, const char *key, const char *value)
 {
     char clean[TEXT_SIZE];
@@ -173,7 +176,7 @@ static assay_status put_flip_map(assay_report_writer *writer, const appearance *
     if (!look->map || !assay_image_find_channel(look->map, "FLIP", &channel)) {
         return ASSAY_OK;
     }
-    return assay_report_put_map(writer, look->map, channel.data.f32, out);
+    return assay_report_put_map(writer, look->map, channel.data.f32, FLIP_SCALE, out);
 }
 
 static void describe_appearance(assay_report_text *text, const appearance *look)
@@ -200,10 +203,13 @@ static assay_status put_candidate_pictures(assay_report_writer *writer, const as
 {
     assay_status status = assay_report_put_colour(writer, image, &out->colour);
     status =
-        status ? status : assay_report_put_map(writer, image, maps->difference, &out->difference);
-    status = status ? status : assay_report_put_map(writer, image, maps->relative, &out->relative);
+        status ? status
+               : assay_report_put_map(writer, image, maps->difference, INFINITY, &out->difference);
+    status = status ? status
+                    : assay_report_put_map(writer, image, maps->relative, RELATIVE_SCALE,
+                                           &out->relative);
     if (status == ASSAY_OK && maps->z) {
-        status = assay_report_put_map(writer, image, maps->z, &out->z);
+        status = assay_report_put_map(writer, image, maps->z, Z_SCALE, &out->z);
     }
     return status ? status : put_flip_map(writer, look, &out->flip);
 }

@@ -43,9 +43,26 @@ static void take_planes(const assay_image *image, planes *out)
     }
 }
 
-static bool has_noise(const planes *p)
+/* One sample has no variance, whatever its channel says. */
+static bool has_one_sample(const assay_image *image)
 {
-    return p->variance[0] && p->variance[1] && p->variance[2];
+    const size_t  pixels = (size_t)assay_image_width(image) * (size_t)assay_image_height(image);
+    assay_channel samples;
+    if (!assay_image_find_channel(image, "SampleCount", &samples) ||
+        samples.type != ASSAY_CHANNEL_UINT) {
+        return false;
+    }
+    for (size_t i = 0; i < pixels; i++) {
+        if (samples.data.u32[i] > 1) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool has_noise(const assay_image *image, const planes *p)
+{
+    return p->variance[0] && p->variance[1] && p->variance[2] && !has_one_sample(image);
 }
 
 static void count_value(assay_report_histogram *h, double value)
@@ -110,8 +127,8 @@ assay_status assay_report_maps_create(assay_context *context, const assay_image 
     take_planes(reference, &a);
     take_planes(candidate, &b);
     assay_report_maps maps = {
-        .noise = (has_noise(&a) ? ASSAY_NOISE_REFERENCE : 0u) |
-                 (has_noise(&b) ? ASSAY_NOISE_CANDIDATE : 0u),
+        .noise = (has_noise(reference, &a) ? ASSAY_NOISE_REFERENCE : 0u) |
+                 (has_noise(candidate, &b) ? ASSAY_NOISE_CANDIDATE : 0u),
         .relative_histogram = {.low = -6.0, .step = 0.125, .bins = 64},
         .z_histogram        = {.low = -6.0, .step = 0.25, .bins = 48},
     };

@@ -30,7 +30,7 @@ typedef struct {
     float *difference; /* candidate - reference, mean of R, G, B                             */
     float *relative;   /* |difference| / (|reference| + 0.01 its mean), mean of R, G, B      */
     float *z;          /* difference in standard errors of it, of the channel where that is
-                          largest; NULL where neither image has a variance                   */
+                          largest; NULL where neither image has a variance, of two samples or more */
     assay_report_noise     noise;
     assay_report_histogram relative_histogram; /* log10 of the relative error, each channel   */
     assay_report_histogram z_histogram;        /* each channel                                */

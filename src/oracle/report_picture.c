@@ -98,11 +98,11 @@ assay_status assay_report_put_colour(assay_report_writer *writer, const assay_im
 }
 
 assay_status assay_report_put_map(assay_report_writer *writer, const assay_image *size,
-                                  const float *values, assay_report_picture *out)
+                                  const float *values, double scale, assay_report_picture *out)
 {
-    const double most = usual_maximum(values, pixels_of(size));
-    return put_picture(writer, size, 1, &values,
-                       most > 0.0 ? most : typical(&values, 1, pixels_of(size)), out);
+    const double most  = usual_maximum(values, pixels_of(size));
+    const double floor = most > 0.0 ? most : typical(&values, 1, pixels_of(size));
+    return put_picture(writer, size, 1, &values, fmin(floor, scale), out);
 }
 
 void assay_report_describe_picture(assay_report_text *text, const char *key,

@@ -20,10 +20,10 @@ typedef struct {
 /* R, G and B of an image.  Errors: MEMORY. */
 assay_status assay_report_put_colour(assay_report_writer *writer, const assay_image *image,
                                      assay_report_picture *out);
-/* One number a pixel of an image of that size.  Its floor is what nearly all values are below.
- * Errors: MEMORY. */
+/* One number a pixel of an image of that size.  Its floor is what nearly all values are below, and
+ * no more than `scale`, up to which the page begins to show it.  Errors: MEMORY. */
 assay_status assay_report_put_map(assay_report_writer *writer, const assay_image *size,
-                                  const float *values, assay_report_picture *out);
+                                  const float *values, double scale, assay_report_picture *out);
 
 void assay_report_describe_picture(assay_report_text *text, const char *key,
                                    const assay_report_picture *picture);

@@ -4,6 +4,13 @@
 #include "core/alloc.h"
 #include "core/context.h"
 
+bool splat_batches_are_stale(const stage_run *run, int ends, size_t records)
+{
+    const stage_table *t = &run->in[ends];
+    return assay_params_bool(run->params, "neighbour_clamp") && t->values && t->rows > 0 &&
+           t->values[t->rows - 1] < (double)records;
+}
+
 static assay_status read(stage_run *run, int input, size_t records, splat_batch *batches,
                          size_t *count)
 {
@@ -12,6 +19,7 @@ static assay_status read(stage_run *run, int input, size_t records, splat_batch 
     const double       splat_a = assay_params_real(run->params, "splat_a");
     const bool         twice   = assay_params_choice(run->params, "variant") == 1;
     const bool         shrinks = assay_params_bool(run->params, "neighbour_clamp");
+    const bool         stale   = splat_batches_are_stale(run, input, records);
     double             before  = 0.0;
     for (size_t k = 0; k < rows; k++) {
         const double end  = ends->values ? ends->values[k] : (double)records;
@@ -21,7 +29,7 @@ static assay_status read(stage_run *run, int input, size_t records, splat_batch 
                                     "not a number of records, no less than the one before");
         }
         before = end;
-        if (last || !shrinks) {
+        if (!stale && (last || !shrinks)) {
             batches[(*count)++] = (splat_batch){
                 .number = (int)k,
                 .old    = last && twice && ends->values ? (uint32_t)ends->values[0] : 0,

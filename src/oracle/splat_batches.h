@@ -20,12 +20,18 @@ typedef struct {
      "published: the last batch has the records of the first one twice.",                          \
      "[gautron06] algorithm 4"},                                                                   \
     {"neighbour_clamp", ASSAY_PARAM_BOOL, "", "off", 0, 0, NULL,                                   \
-     "Records shrink while others are made: the last batch alone can be replayed.",                \
-     "[krivanek06]"}
+     STAGE_SHRINK_SUMMARY, "[krivanek06]"}
+#define STAGE_SHRINK_SUMMARY                                                                       \
+    "Records shrink while others are made: the last batch alone can be replayed, and it only if "  \
+    "no later sweep made records."
 /* clang-format on */
 
-/* From the input `ends` (a row a batch; without it one batch has all).  Release what is made.
- * Errors: DOMAIN, MEMORY. */
+/* Whether records are not what they were when they were splatted: a later sweep over other samples
+ * has made some, which are beyond the last end, and shrunk those before. */
+bool splat_batches_are_stale(const stage_run *run, int ends, size_t records);
+
+/* From the input `ends` (a row a batch; without it one batch has all); none where they are stale.
+ * Release what is made.  Errors: DOMAIN, MEMORY. */
 assay_status splat_batches_read(stage_run *run, int ends, size_t records, splat_batch **batches_out,
                                 size_t *count_out);
 

@@ -1,12 +1,14 @@
-/* stage_points.c - Invariant: a normal is of unit length to 1e-6, as a record store asks for; how
- * far it was from that when it was stored is part of what is not known of it. */
+/* stage_points.c - Invariant: a vector is of unit length to 4e-7, which is within what a record
+ * store asks of a length (1e-6) and a BRDF's grid of its square; how far it was from that when it
+ * was stored is part of what is not known of it. */
 #include "oracle/stage_points.h"
 
 #include "core/alloc.h"
 #include "core/context.h"
 
-/* Farther from unit length nothing is one; nearer than that double itself is. */
-static const double UNIT_TOLERANCE = 1e-6, UNIT_EXACT = 1e-14;
+/* Farther from unit length (or than its type rounds) nothing is one; farther than UNIT_ENOUGH it is
+ * brought there; nearer than UNIT_EXACT double itself is. */
+static const double UNIT_TOLERANCE = 1e-6, UNIT_ENOUGH = 4e-7, UNIT_EXACT = 1e-14;
 
 static bool is_none(assay_vec3 v) { return isnan(v.x) && isnan(v.y) && isnan(v.z); }
 
@@ -28,7 +30,7 @@ assay_status stage_unit_vectors(stage_run *run, int input, size_t column, assay_
             stage_fail_value(run, input, i, column, "a vector that is not of unit length");
             return ASSAY_ERR_DOMAIN;
         }
-        if (away > UNIT_TOLERANCE) {
+        if (away > UNIT_ENOUGH) {
             v[i]  = vec3_normalize(v[i]);
             moved = fmax(moved, away);
         }

@@ -11,6 +11,7 @@
 #include "core/context.h"
 #include "core/parallel.h"
 #include "oracle/lobe_bound.h"
+#include "oracle/splat_batches.h"
 #include "oracle/stage_list.h"
 #include "oracle/stage_radiance.h"
 
@@ -31,6 +32,8 @@ static const assay_param_desc PARAMS[] = {
      "[gautron06] eq. 3.35, 3.36"},
     {"variant", ASSAY_PARAM_CHOICE, "", "corrected", 0, 0, "corrected|published",
      "published: records that count twice are not replayed.", "[gautron06] algorithm 4"},
+    {"neighbour_clamp", ASSAY_PARAM_BOOL, "", "off", 0, 0, NULL, STAGE_SHRINK_SUMMARY,
+     "[krivanek06]"},
     {0}};
 
 static const assay_stage_array INPUTS[] = {
@@ -325,9 +328,13 @@ static assay_status run_splat_glossy_light(stage_run *run)
                                  : stage_radiance_open(run, true, pixels, run->in[SPLAT_POSITION].values,
                                                        &job.radiance);
     status              = status ? status : check(&job);
-    status              = status ? status : make_output(&job);
-    status              = status ? status : make_desks(&job);
-    status = status ? status : assay_parallel_for(run->context, NULL, pixels, light_pixel, &job);
+    if (status == ASSAY_OK &&
+        !splat_batches_are_stale(run, SPLAT_ENDS, job.radiance.records.count)) {
+        status = make_output(&job);
+        status = status ? status : make_desks(&job);
+        status =
+            status ? status : assay_parallel_for(run->context, NULL, pixels, light_pixel, &job);
+    }
     close_job(&job);
     return status == ASSAY_ERR_MEMORY ? assay_fail_memory(run->context, "splatting") : status;
 }

@@ -12,6 +12,7 @@
 #include "core/parallel.h"
 #include "methods/cached_image.h"
 #include "oracle/record_parts.h"
+#include "oracle/splat_batches.h"
 #include "oracle/stage_list.h"
 
 enum {
@@ -30,6 +31,8 @@ static const assay_param_desc PARAMS[] = {
      "Accuracy of the last batch; 0: a.", "[gautron06] fig. 4.12"},
     {"variant", ASSAY_PARAM_CHOICE, "", "corrected", 0, 0, "corrected|published",
      "published: records that count twice are not replayed.", "[gautron06] algorithm 4"},
+    {"neighbour_clamp", ASSAY_PARAM_BOOL, "", "off", 0, 0, NULL, STAGE_SHRINK_SUMMARY,
+     "[krivanek06]"},
     {0}};
 
 static const assay_stage_array INPUTS[] = {
@@ -187,10 +190,12 @@ static assay_status run_splat_light(stage_run *run)
     }
     assay_status status = stage_records_open(run, true, &records);
     status              = status ? status : check(&job);
-    status              = status ? status : open_job(&job);
-    status              = status ? status
-                                 : assay_parallel_for(run->context, NULL, (pixels + CHUNK - 1) / CHUNK,
-                                                      light_pixels, &job);
+    if (status == ASSAY_OK && !splat_batches_are_stale(run, SPLAT_ENDS, records.count)) {
+        status = open_job(&job);
+        status = status ? status
+                        : assay_parallel_for(run->context, NULL, (pixels + CHUNK - 1) / CHUNK,
+                                             light_pixels, &job);
+    }
     close_job(&job);
     stage_records_close(&records);
     return status == ASSAY_ERR_MEMORY ? assay_fail_memory(run->context, "splatting") : status;

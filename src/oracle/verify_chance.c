@@ -60,7 +60,8 @@ void assay_chance_ask(assay_finding *finding, const assay_judgement *judgement,
                  needed, has);
     } else {
         char least[64];
-        snprintf(least, sizeof least, of > 0.0 ? "%.0f samples a pixel" : "%.3g of the reference's",
+        snprintf(least, sizeof least,
+                 of > 0.0 ? "%.0f samples a pixel" : "%.3g of the reference's samples",
                  of > 0.0 ? needed : share);
         snprintf(text, ASSAY_CHANCE_TEXT,
                  "%s%sNo chance if %s took %s or more%s: light that few samples find may be "

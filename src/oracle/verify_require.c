@@ -23,8 +23,10 @@ static assay_status require(assay_verdict *verdict, const char *stage)
     f.array         = stage;
     f.test          = "required";
     f.kind          = ASSAY_VERDICT_CANNOT_TELL;
-    f.meaning = "The stage was to be judged, but the bundle has not both what it takes and what "
-                "it makes, or no scene was given that it looks at.";
+    f.meaning =
+        "The stage was to be judged, but the bundle has not both what it takes and what "
+        "it makes, or no scene was given that it looks at, or its parameters are among those "
+        "of which it replays nothing.";
     return has_finding(verdict, stage) ? ASSAY_OK : assay_verdict_add(verdict, &f);
 }
 

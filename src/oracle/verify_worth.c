@@ -136,7 +136,8 @@ static assay_status insist_on_stages(assay_verdict *verdict)
         f.stage = f.array = stage;
         f.test            = "judged";
         f.kind            = ASSAY_VERDICT_CANNOT_TELL;
-        f.meaning         = "The stage ran, but none of its numbers has a bound in this precision.";
+        f.meaning         = "The stage ran, but none of its numbers has a bound in this precision "
+                            "and with these parameters.";
         status            = assay_verdict_add(verdict, &f);
         at += length;
         at += strspn(at, ", ");

@@ -88,6 +88,8 @@ sed 's/"fail"/"pass"/g; s/"0x1p+9"/null/; s/"first":1/"first":null/
 accepts "a verdict that passes" report "$work/dir/cache" --reference "$truth" --verdict "$work/pass.json" \
     -o "$work/pass.html" -q
 sed -i '/class="reference"/s/"samples":16,/"samples":1,/' "$work/pass.html"
+"$assay" render $box $tiny --layers color -m path --spp 1 --seed 6 -o "$work/once.exr"
+accepts "images of one sample" report "$work/cache.exr" --reference "$work/once.exr" -o "$work/once.html" -q
 mkdir "$work/one"
 cp "$work/cache.exr" "$work/dir/four.exr" "$work/one"
 cp -r "$work/dir/cache" "$work/one/cache"
@@ -160,11 +162,11 @@ browse() { # EXPECTED: pages
 
 mkdir "$folder/pages"
 cp "$work/pair.html" "$work/phone.html"
-for page in all pair pass same phone; do
+for page in all pair pass same phone once; do
     inject "$work/$page.html" "$folder/pages/$page.html" -e ''
 done
-browse 5
-for page in all pair pass phone; do
+browse 6
+for page in all pair pass phone once; do
     grep -q "SELFTEST $page.html passes" "$folder/console"
     code=$?
     [ $code -eq 0 ] || grep "SELFTEST $page.html" "$folder/console" | sed 's/^/# /'

@@ -34,7 +34,7 @@ ends "all numbers have a bound" 0 "PASS: " --judged 1
 ends "a stage that is required" 0 "PASS: " --require combine-irradiance,combine,splat
 ends "one that cannot be judged" 2 "visible, test required" --require combine,visible
 ends "a scene makes it judged" 0 "PASS: " --require visible --scene "$box"
-ends "in half no number of it has a bound" 0 "Without a bound on any number in this precision: stage visible." \
+ends "in half no number of it has a bound" 0 "Without a bound on any number in this precision and with these parameters: stage visible." \
     --precision half --scene "$box"
 ends "which is no pass where a part is asked for" 2 "visible, test judged" --precision half \
     --scene "$box" --judged 0.5

@@ -257,6 +257,50 @@ static void test_splat_glossy(void **state)
     free(d);
 }
 
+/* Arrays that a stage makes of records that shrink, when the last batch ends at `last`. */
+static int made_of_shrinking(assay_context *context, const radiance_data *d, const char *stage,
+                             double last)
+{
+    const double ends[] = {0.0, 10.0, last};
+    stage_case   s      = stage_case_begin(context);
+    radiance_data_add(&s, d);
+    add_pixels(&s, d, ends);
+    stage_case_text(&s, "neighbour_clamp", "on");
+    stage_case_run(&s, stage, ASSAY_PRECISION_FLOAT);
+    const int made = s.run.out_count;
+    stage_case_end(&s);
+    return made;
+}
+
+/* Records beyond the last end have shrunk the others since. */
+static void test_later_sweeps(void **state)
+{
+    static const char *const stages[] = {"splat-glossy", "splat-glossy-light"};
+    radiance_data           *d        = radiance_data_make();
+    for (size_t i = 0; i < 2; i++) {
+        assert_int_equal(made_of_shrinking(*state, d, stages[i], RECORDS), 1);
+        assert_int_equal(made_of_shrinking(*state, d, stages[i], RECORDS - 1), 0);
+    }
+    free(d);
+}
+
+/* Nearer to unit length than is refused, farther than a grid takes. */
+static void test_nearly_unit(void **state)
+{
+    const double   ends[] = {0.0, 10.0, RECORDS};
+    radiance_data *d      = radiance_data_make();
+    stage_case     s      = stage_case_begin(*state);
+    for (size_t k = 9; k < 12; k++) {
+        d->brdf[k] *= 1.0 + 9e-7;
+    }
+    radiance_data_add(&s, d);
+    add_pixels(&s, d, ends);
+    stage_case_run(&s, "splat-glossy-light", ASSAY_PRECISION_FLOAT);
+    assert_int_equal(s.run.out_count, 1);
+    stage_case_end(&s);
+    free(d);
+}
+
 /* ---- without memory ---- */
 
 typedef struct {
@@ -323,6 +367,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_lobes, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_splat_glossy_light, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_splat_glossy, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_later_sweeps, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_nearly_unit, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_no_memory, context_set_up, context_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

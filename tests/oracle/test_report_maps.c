@@ -124,6 +124,27 @@ static void test_maps(void **state)
     }
 }
 
+/* Of one sample nobody knows a variance; of two in one pixel somebody does. */
+static void test_one_sample(void **state)
+{
+    for (unsigned most = 1; most <= 2; most++) {
+        assay_image  *a = make_image(*state, 1, true), *b = make_image(*state, 2, false);
+        assay_channel samples;
+        assert_int_equal(assay_image_add_channel(a, "SampleCount", ASSAY_CHANNEL_UINT, &samples),
+                         ASSAY_OK);
+        for (int i = 0; i < PIXELS; i++) {
+            samples.data.u32[i] = i == PIXELS - 1 ? most : 1;
+        }
+        assay_report_maps maps;
+        assert_int_equal(assay_report_maps_create(*state, a, b, &maps), ASSAY_OK);
+        assert_int_equal(maps.noise, most == 1 ? ASSAY_NOISE_NONE : ASSAY_NOISE_REFERENCE);
+        assert_true((maps.z != NULL) == (most > 1));
+        assay_report_maps_release(*state, &maps);
+        assay_image_destroy(a);
+        assay_image_destroy(b);
+    }
+}
+
 static void test_equal_and_not_finite(void **state)
 {
     assay_image      *a = make_image(*state, 1, true), *b = make_image(*state, 1, true);
@@ -200,6 +221,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_maps, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_one_sample, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_equal_and_not_finite, context_set_up,
                                         context_tear_down),
         cmocka_unit_test_setup_teardown(test_luminance_and_exposure, context_set_up,

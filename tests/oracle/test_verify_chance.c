@@ -104,6 +104,26 @@ static void says_how_many_samples(void **state)
     assay_image_destroy(r);
 }
 
+/* Where nobody knows how many samples the reference has, it is said in parts of them.  They may be
+ * two: the variance of 20 pixels has 20 degrees of freedom, and Student's quantile is 3.33. */
+static void says_which_share(void **state)
+{
+    char          text[1024];
+    assay_image  *c = make_candidate(*state, 1.0, false), *r = make_reference(*state, false);
+    assay_channel samples;
+    const double  share = samples_by_hand(RARE * 0.29, 3.33) / REFERENCE_SAMPLES;
+    assert_true(assay_image_find_channel(r, "SampleCount", &samples));
+    memset(samples.data.u32, 0, PIXELS * sizeof *samples.data.u32);
+    const assay_finding f  = find_of(*state, c, r, 0, "whole", text);
+    const char         *at = strstr(text, "if the candidate took ");
+    assert_int_equal(f.kind, ASSAY_VERDICT_FAIL);
+    assert_non_null(at);
+    assert_true(fabs(strtod(at + 22, NULL) - share) <= 0.05 * share);
+    assert_non_null(strstr(at, " of the reference's samples or more: light"));
+    assay_image_destroy(c);
+    assay_image_destroy(r);
+}
+
 /* The same in one of 16 tiles: of that the level is a sixteenth of a third. */
 static void a_tile_likewise(void **state)
 {
@@ -210,6 +230,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(says_how_many_samples, counted_set_up, counted_tear_down),
+        cmocka_unit_test_setup_teardown(says_which_share, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(a_tile_likewise, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(the_surest_tile_decides, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(too_much_light_is_no_lack, counted_set_up,

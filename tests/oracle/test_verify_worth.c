@@ -238,6 +238,36 @@ static void test_no_bounds(void **state)
     free(d);
 }
 
+/* Stages without a bound where records shrink, and the last of `ends` is that. */
+static char *blind_of_shrinking(assay_context *context, const splat_data *d, double end)
+{
+    stage_case c = stage_case_begin(context), r = stage_case_begin(context);
+    for (int k = 0; k < 2; k++) {
+        splat_add_arrays(k ? &r : &c, d, -1);
+        stage_case_text(k ? &r : &c, "assay:splat.neighbour_clamp", "on");
+        stage_case_table(k ? &r : &c, "splat/batch_end", "records", 1, 1, &end);
+    }
+    assay_verdict *verdict = splat_verify_cases(&c, &r);
+    const char    *blind   = assay_verdict_get(verdict, "blind");
+    char          *copy    = strdup(blind ? blind : "");
+    assert_int_equal(assay_verdict_whole(verdict), ASSAY_VERDICT_PASS);
+    assay_verdict_destroy(verdict);
+    return copy;
+}
+
+/* A later sweep made records, which shrunk those that had been splatted. */
+static void test_later_sweeps(void **state)
+{
+    splat_data *d    = splat_make_data(*state);
+    char       *none = blind_of_shrinking(*state, d, SPLAT_RECORDS),
+         *both       = blind_of_shrinking(*state, d, SPLAT_RECORDS - 1);
+    assert_string_equal(none, "");
+    assert_string_equal(both, "splat, splat-light");
+    free(none);
+    free(both);
+    free(d);
+}
+
 /* ---- what was required ---- */
 
 static void test_require(void **state)
@@ -271,6 +301,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_insist_edges, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_blind_stage, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_no_bounds, context_set_up, context_tear_down),
+        cmocka_unit_test_setup_teardown(test_later_sweeps, context_set_up, context_tear_down),
         cmocka_unit_test_setup_teardown(test_require, context_set_up, context_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

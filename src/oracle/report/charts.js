@@ -161,7 +161,7 @@ const NOISE_OF = ["", "of the reference alone", "of the candidate alone", "of bo
 function zChart(entry) {
   const h = entry.zHistogram;
   if (!h) {
-    return nothing("z-score", "Neither image says how noisy it is (no Variance channels).",
+    return nothing("z-score", "Neither image says how noisy it is (no Variance channels, or of one sample a pixel).",
       "Where one does, this compares the difference with the noise.");
   }
   if (allEqual(h)) return nothing("z-score", "No value differs.", "");
