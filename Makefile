@@ -14,8 +14,8 @@ SAN     ?=
 
 # What `make deps` installs (Debian 12).
 DEPS_BUILD := gcc g++ make libembree-dev libopenexr-dev libtinygltf-dev libsleef-dev \
-              librandom123-dev libpng-dev zlib1g-dev libjpeg-dev libcjson-dev \
-              libmd-dev
+              librandom123-dev libpng-dev zlib1g-dev libdeflate-dev libjpeg-dev \
+              libcjson-dev libmd-dev
 DEPS_TEST  := libcmocka-dev clang chromium python3-numpy
 DEPS_LINT  := clang-format clang-tidy cppcheck
 DEPS_REF   := libflint-arb-dev libflint-dev libmpfr-dev
@@ -27,7 +27,7 @@ override CFLAGS += -std=c11 $(OPT) $(WARN) -Wstrict-prototypes -Wmissing-prototy
             -fvisibility=hidden -fPIC -pthread $(SAN)
 override CXXFLAGS += -std=c++17 $(OPT) $(WARN) -ffp-contract=off -fvisibility=hidden -fPIC $(SAN)
 override LDFLAGS += -pthread $(SAN)
-override LDLIBS += -lembree3 -lOpenEXRCore -ltinygltf -lsleef -lpng -lz -ljpeg -lcjson -lmd -lm -lstdc++
+override LDLIBS += -lembree3 -lOpenEXRCore -ltinygltf -lsleef -lpng -lz -ldeflate -ljpeg -lcjson -lmd -lm -lstdc++
 
 LIB_C   := $(filter-out src/cli/%,$(wildcard src/*/*.c src/*/*/*.c))
 LIB_CXX := $(wildcard src/*/*.cpp)

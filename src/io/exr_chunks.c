@@ -1,16 +1,19 @@
 /* exr_chunks.c - the pixels of an OpenEXR file, chunk by chunk, on all threads.
  *
- * The library only reads and decompresses; the samples are taken out of its decompressed chunk
- * here, since that is where HALF becomes FLOAT and every bit counts.
+ * The library only reads and decompresses (but for ZIP, exr_zip.c); the samples are taken out of
+ * its decompressed chunk here, since that is where HALF becomes FLOAT and every bit counts.
  *
  * Invariant: chunks share no pixel, so their order changes nothing.  Threads in the library would
  * mix up its messages, so nothing that fails is reported by them: then the chunks are read again,
  * one after the other, and the first one that fails says why. */
+#include <stdlib.h>
+
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/parallel.h"
 #include "io/exr_job.h"
 #include "io/exr_window.h"
+#include "io/exr_zip.h"
 #include "io/half.h"
 
 /* How the part is cut: rows of chunks; of scan lines one a row. */
@@ -26,6 +29,7 @@ typedef struct {
     exr_decode_pipeline_t decode;
     bool                  begun;
     exr_result_t (*decompress)(exr_decode_pipeline_t *); /* the library's choice */
+    struct libdeflate_decompressor *inflater;            /* made when it is needed */
     int32_t x, y; /* of the chunk's first pixel, in the data window's coordinates */
 } chunk_reader;
 
@@ -84,6 +88,35 @@ static exr_result_t unpack_chunk(exr_decode_pipeline_t *decode)
 
 /* ---- a chunk ---- */
 
+/* Makes room as the library would, with the same functions: it releases it. */
+static bool make_room(void **buffer, size_t *allocated, size_t size)
+{
+    if (*allocated < size) {
+        free(*buffer);
+        *buffer    = calloc(1, size);
+        *allocated = *buffer ? size : 0;
+    }
+    return *allocated >= size;
+}
+
+static exr_result_t unzip(exr_decode_pipeline_t *decode)
+{
+    chunk_reader *reader = decode->decoding_user_data;
+    const size_t  size   = decode->chunk.unpacked_size;
+    if (!reader->inflater) {
+        reader->inflater = libdeflate_alloc_decompressor();
+    }
+    if (!reader->inflater ||
+        !make_room(&decode->unpacked_buffer, &decode->unpacked_alloc_size, size) ||
+        !make_room(&decode->scratch_buffer_1, &decode->scratch_alloc_size_1, size)) {
+        return EXR_ERR_OUT_OF_MEMORY;
+    }
+    return assay_exr_unzip(reader->inflater, decode->packed_buffer, decode->chunk.packed_size,
+                           decode->scratch_buffer_1, decode->unpacked_buffer, size)
+               ? EXR_ERR_SUCCESS
+               : EXR_ERR_CORRUPT_CHUNK;
+}
+
 /* B44 that ends too early is "out of memory" to the library.  It is so only where the scratch
  * buffer, which comes first, could not be had. */
 static exr_result_t decompress(exr_decode_pipeline_t *decode)
@@ -95,6 +128,11 @@ static exr_result_t decompress(exr_decode_pipeline_t *decode)
     return result == EXR_ERR_OUT_OF_MEMORY && b44 && decode->scratch_buffer_1
                ? EXR_ERR_CORRUPT_CHUNK
                : result;
+}
+
+static bool is_zipped(const exr_job *job)
+{
+    return job->compression == EXR_COMPRESSION_ZIP || job->compression == EXR_COMPRESSION_ZIPS;
 }
 
 static exr_result_t prepare(chunk_reader *reader, const exr_chunk_info_t *chunk)
@@ -122,7 +160,9 @@ static exr_result_t decode_chunk(chunk_reader *reader, const exr_chunk_info_t *c
     /* A chunk that compression would not have made smaller is stored as it is; 3.1 forgets that for
      * B44 and would scramble it. */
     const bool raw                = chunk->packed_size == chunk->unpacked_size;
-    decode->decompress_fn         = raw || !reader->decompress ? NULL : decompress;
+    decode->decompress_fn         = raw || !reader->decompress ? NULL
+                                    : is_zipped(reader->job)   ? unzip
+                                                               : decompress;
     decode->decoding_user_data    = reader;
     decode->unpack_and_convert_fn = unpack_chunk;
     return exr_decoding_run(reader->job->exr, 0, decode);
@@ -202,6 +242,7 @@ static void close_reader(chunk_reader *reader)
     if (reader->begun) {
         exr_decoding_destroy(reader->job->exr, &reader->decode);
     }
+    libdeflate_free_decompressor(reader->inflater);
 }
 
 static assay_status read_one_by_one(exr_job *job, const chunk_grid *grid)

@@ -7,7 +7,7 @@ set -eu
 base=$PWD/build/arm64
 root=$base/root
 packages="libembree-dev libopenexr-dev libtinygltf-dev libsleef-dev librandom123-dev libpng-dev zlib1g-dev
-          libjpeg-dev libcjson-dev libmd-dev libc6-dev libstdc++-12-dev"
+          libdeflate-dev libjpeg-dev libcjson-dev libmd-dev libc6-dev libstdc++-12-dev"
 
 missing=
 for p in gcc-aarch64-linux-gnu g++-aarch64-linux-gnu qemu-user; do
@@ -21,7 +21,7 @@ if [ -n "$missing" ]; then
     $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -qy --no-install-recommends $missing
 fi
 
-if [ ! -e "$base/unpacked" ]; then
+if [ "$(cat "$base/unpacked" 2> /dev/null)" != "$packages" ]; then
     echo "arm64: fetching packages into build/arm64"
     mkdir -p "$base/state/lists/partial" "$base/cache/archives/partial" "$root"
     : > "$base/state/status"
@@ -43,7 +43,7 @@ if [ ! -e "$base/unpacked" ]; then
     for name in c m pthread dl rt util; do
         rm -f "$root/usr/lib/aarch64-linux-gnu/lib$name.so" "$root/usr/lib/aarch64-linux-gnu/lib$name.a"
     done
-    touch "$base/unpacked"
+    printf '%s\n' "$packages" > "$base/unpacked"
 fi
 
 lib=$root/usr/lib/aarch64-linux-gnu
