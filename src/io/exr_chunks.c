@@ -7,6 +7,7 @@
  * mix up its messages, so nothing that fails is reported by them: then the chunks are read again,
  * one after the other, and the first one that fails says why. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/alloc.h"
 #include "core/context.h"
@@ -111,10 +112,17 @@ static exr_result_t unzip(exr_decode_pipeline_t *decode)
         !make_room(&decode->scratch_buffer_1, &decode->scratch_alloc_size_1, size)) {
         return EXR_ERR_OUT_OF_MEMORY;
     }
-    return assay_exr_unzip(reader->inflater, decode->packed_buffer, decode->chunk.packed_size,
-                           decode->scratch_buffer_1, decode->unpacked_buffer, size)
-               ? EXR_ERR_SUCCESS
-               : EXR_ERR_CORRUPT_CHUNK;
+    /* What compression would not have made smaller is stored as it is.  3.1 also stores streams
+     * that are just as long, which only their check sums tell from samples. */
+    const size_t packed = decode->chunk.packed_size;
+    if (!assay_exr_unzip(reader->inflater, decode->packed_buffer, packed, decode->scratch_buffer_1,
+                         decode->unpacked_buffer, size)) {
+        if (packed != size) {
+            return EXR_ERR_CORRUPT_CHUNK;
+        }
+        memcpy(decode->unpacked_buffer, decode->packed_buffer, size);
+    }
+    return EXR_ERR_SUCCESS;
 }
 
 /* B44 that ends too early is "out of memory" to the library.  It is so only where the scratch
@@ -160,9 +168,9 @@ static exr_result_t decode_chunk(chunk_reader *reader, const exr_chunk_info_t *c
     /* A chunk that compression would not have made smaller is stored as it is; 3.1 forgets that for
      * B44 and would scramble it. */
     const bool raw                = chunk->packed_size == chunk->unpacked_size;
-    decode->decompress_fn         = raw || !reader->decompress ? NULL
-                                    : is_zipped(reader->job)   ? unzip
-                                                               : decompress;
+    decode->decompress_fn         = is_zipped(reader->job)       ? unzip
+                                    : raw || !reader->decompress ? NULL
+                                                                 : decompress;
     decode->decoding_user_data    = reader;
     decode->unpack_and_convert_fn = unpack_chunk;
     return exr_decoding_run(reader->job->exr, 0, decode);

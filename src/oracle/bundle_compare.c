@@ -1,5 +1,6 @@
 /* bundle_compare.c - Invariant: a number passes only where it is within its bound; where of most
- * numbers nothing is known, or all bounds are as large as what they bound, nothing is said to pass.
+ * numbers nothing is known, or most bounds are as large as what they bound, nothing is said to
+ * pass.
  *
  * How wide bounds are is told by order statistics of bound / |number|, since a single number that
  * happens to cancel has a ratio that says nothing of the others. */
@@ -84,7 +85,7 @@ static bool is_blind(const bundle_comparison *c)
     for (size_t i = 0; i < c->count; i++) {
         sized += has_width(c, i);
     }
-    return c->count == 0 || is_mostly_unknown(c) || (sized > 0 && c->vacuous == sized);
+    return c->count == 0 || is_mostly_unknown(c) || 2 * c->vacuous > sized;
 }
 
 assay_verdict_kind bundle_compare_kind(const bundle_comparison *c)
@@ -125,7 +126,7 @@ void bundle_compare_describe(const bundle_comparison *c, char *words, size_t siz
                  c->count == 0 ? "The array is empty."
                  : is_mostly_unknown(c)
                      ? "Most of its values have no bound."
-                     : "All bounds are as large as what they bound: with so "
+                     : "Most bounds are as large as what they bound: with so "
                        "few digits, computed or stored, nothing is decided here.");
         break;
     case ASSAY_VERDICT_PASS: break;

@@ -44,31 +44,29 @@ void assay_chance_ask(assay_finding *finding, const assay_judgement *judgement,
                       const assay_verify_channel *channel, const assay_noisy_sums *sums,
                       double share, char text[ASSAY_CHANCE_TEXT])
 {
-    const double has = taken(judgement, channel, sums);
-    const double of = sums->reference_samples / sums->pixels, needed = ceil(share * of);
-    const bool   runs = channel->source == ASSAY_NOISE_RUNS;
-    if (finding->kind != ASSAY_VERDICT_FAIL || !(share > 0.0) || (of > 0.0 && needed <= 1.0) ||
-        (of > 0.0 && has >= needed)) {
+    const double has    = taken(judgement, channel, sums);
+    const double of     = sums->reference_samples / sums->pixels;
+    const double needed = of > 0.0 ? fmax(1.0, ceil(share * of)) : INFINITY;
+    const bool   runs   = channel->source == ASSAY_NOISE_RUNS;
+    char         least[64], said[64] = "--samples says so";
+    if (finding->kind != ASSAY_VERDICT_FAIL || !(share > 0.0) || fmax(has, 1.0) >= needed) {
         return;
     }
-    if (!runs && has > 0.0 && of > 0.0) {
+    if (!runs) {
         finding->kind = ASSAY_VERDICT_CANNOT_TELL;
-        snprintf(text, ASSAY_CHANCE_TEXT,
-                 "Too dark, but light that few samples find may be missing by chance: no chance "
-                 "from %.0f samples a pixel on, and the candidate has %.3g. Give it a variance or "
-                 "more samples; of a cache or a denoiser several runs, or --allow.",
-                 needed, has);
-    } else {
-        char least[64];
-        snprintf(least, sizeof least,
-                 of > 0.0 ? "%.0f samples a pixel" : "%.3g of the reference's samples",
-                 of > 0.0 ? needed : share);
-        snprintf(text, ASSAY_CHANCE_TEXT,
-                 "%s%sNo chance if %s took %s or more%s: light that few samples find may be "
-                 "missing by chance.",
-                 finding->meaning ? finding->meaning : "", finding->meaning ? " " : "",
-                 runs ? "the runs together" : "the candidate", least,
-                 of > 0.0 ? " (--samples says so)" : "");
     }
+    snprintf(least, sizeof least,
+             of > 0.0 ? "%.0f samples a pixel" : "%.3g of the reference's samples",
+             of > 0.0 ? needed : share);
+    if (has > 0.0) {
+        snprintf(said, sizeof said, "%s %.3g", runs ? "they took" : "it took", has);
+    } else if (!(of > 0.0)) {
+        snprintf(said, sizeof said, "--samples and --reference-samples say so");
+    }
+    snprintf(text, ASSAY_CHANCE_TEXT,
+             "%s%sNo chance if %s took %s or more (%s): light that few samples find may be missing "
+             "by chance.",
+             finding->meaning ? finding->meaning : "", finding->meaning ? " " : "",
+             runs ? "the runs together" : "the candidate", least, said);
     finding->meaning = text;
 }

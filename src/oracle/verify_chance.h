@@ -12,9 +12,9 @@ enum { ASSAY_CHANCE_TEXT = ASSAY_MEANING_SIZE + 256 };
 double assay_chance_share(const assay_verify_channel *channel, int level,
                           const assay_noisy_sums *sums, assay_critical_values *critical);
 
-/* Of a finding that fails: says in its meaning from how many samples on that stands, in `text`, or
- * takes the failure back where the candidate is known to have fewer.  sums: of the surest region,
- * whose share is given. */
+/* Of a finding that fails: says in its meaning from how many samples on that stands, in `text`,
+ * where the candidate is not known to have as many; takes the failure of a single image back there.
+ * sums: of the surest region, whose share is given. */
 void assay_chance_ask(assay_finding *finding, const assay_judgement *judgement,
                       const assay_verify_channel *channel, const assay_noisy_sums *sums,
                       double share, char text[ASSAY_CHANCE_TEXT]);
