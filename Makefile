@@ -37,7 +37,7 @@ BENCH_C := $(wildcard tests/bench/*.c)
 TABLE_C := $(wildcard tests/tables/*.c)
 HELP_C  := $(wildcard tests/support/*.c)
 TEST_C  := $(wildcard tests/*/test_*.c)
-PAGE    := $(wildcard src/oracle/report/*)
+PAGE    := $(wildcard src/oracle/report/page/*)
 LIB_O   := $(LIB_C:%.c=$(BUILD)/%.o) $(LIB_CXX:%.cpp=$(BUILD)/%.o) $(BUILD)/report_page.o
 CLI_O   := $(CLI_C:%.c=$(BUILD)/%.o)
 GEN_O   := $(GEN_C:%.c=$(BUILD)/%.o)
@@ -69,7 +69,7 @@ $(BUILD)/%.o: %.cpp
 
 $(BUILD)/report_page.c: $(PAGE)
 	@mkdir -p $(@D)
-	src/oracle/report/embed.sh > $@.tmp && mv $@.tmp $@
+	src/oracle/report/page/embed.sh > $@.tmp && mv $@.tmp $@
 
 $(BUILD)/report_page.o: $(BUILD)/report_page.c
 	$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@

@@ -10,10 +10,10 @@
 #include <cmocka.h>
 
 #include "core/numerics.h"
-#include "oracle/basis_bound.h"
-#include "oracle/irradiance_bound.h"
-#include "oracle/mean_bound.h"
-#include "oracle/record_bound.h"
+#include "oracle/stage/basis_bound.h"
+#include "oracle/stage/irradiance_bound.h"
+#include "oracle/stage/mean_bound.h"
+#include "oracle/stage/record_bound.h"
 #include "support/measure.h"
 #include "support/near.h"
 #include "support/random_places.h"

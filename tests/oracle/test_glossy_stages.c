@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "core/numerics.h"
-#include "oracle/lobe_bound.h"
+#include "oracle/stage/lobe_bound.h"
 #include "support/failing_context.h"
 #include "support/measure.h"
 #include "support/radiance_candidate.h"

@@ -11,7 +11,7 @@
 
 #include "core/numerics.h"
 #include "core/random.h"
-#include "oracle/multiple_tests.h"
+#include "oracle/image/multiple_tests.h"
 #include "support/failing_context.h"
 
 static failing_memory memory;

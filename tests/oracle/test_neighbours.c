@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "core/numerics.h"
-#include "oracle/neighbours.h"
+#include "oracle/image/neighbours.h"
 #include "support/failing_context.h"
 #include "support/normal_images.h"
 

@@ -9,8 +9,8 @@
 #include <math.h>
 
 #include "core/numerics.h"
-#include "oracle/noise_model.h"
-#include "oracle/student.h"
+#include "oracle/image/noise_model.h"
+#include "oracle/image/student.h"
 #include "support/failing_context.h"
 
 enum { SIDE = 12, TILE = 4, PIXELS = SIDE * SIDE, IN_TILE = TILE * TILE };

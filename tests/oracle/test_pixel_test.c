@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "core/numerics.h"
-#include "oracle/pixel_test.h"
+#include "oracle/image/pixel_test.h"
 #include "support/failing_context.h"
 #include "support/normal_images.h"
 

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "core/numerics.h"
-#include "oracle/turn_bound.h"
+#include "oracle/stage/turn_bound.h"
 #include "support/measure.h"
 #include "support/radiance_candidate.h"
 #include "support/random_places.h"

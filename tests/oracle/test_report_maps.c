@@ -11,7 +11,7 @@
 #include <stdio.h>
 
 #include "core/random.h"
-#include "oracle/report_maps.h"
+#include "oracle/report/report_maps.h"
 #include "support/failing_context.h"
 #include "support/random_places.h"
 

@@ -12,7 +12,7 @@
 #include <zlib.h>
 
 #include "core/random.h"
-#include "oracle/report_pack.h"
+#include "oracle/report/report_pack.h"
 #include "support/failing_context.h"
 #include "support/random_places.h"
 

@@ -15,7 +15,7 @@
 
 #include "core/random.h"
 #include "io/bundle.h"
-#include "oracle/report_records.h"
+#include "oracle/report/report_records.h"
 #include "support/random_places.h"
 #include "support/temporary.h"
 #include "trace/camera_ray.h"

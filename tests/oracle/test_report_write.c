@@ -13,7 +13,7 @@
 
 #include "assay/image.h"
 #include "assay/report.h"
-#include "oracle/report_folder.h"
+#include "oracle/report/report_folder.h"
 #include "support/failing_context.h"
 #include "support/random_places.h"
 #include "support/temporary.h"

@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-#include "oracle/stage_meaning.h"
+#include "oracle/stage/stage_meaning.h"
 
 enum { COUNT = 9 };
 

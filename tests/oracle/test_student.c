@@ -10,7 +10,7 @@
 #include <math.h>
 
 #include "core/numerics.h"
-#include "oracle/student.h"
+#include "oracle/image/student.h"
 #include "support/near.h"
 #include "support/reference_table.h"
 

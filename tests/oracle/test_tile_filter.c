@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "core/random.h"
-#include "oracle/tile_filter.h"
+#include "oracle/metrics/tile_filter.h"
 #include "support/near.h"
 
 enum { WIDTH = 37, RADIUS = 7, STRIDE = WIDTH + 2 * RADIUS, ROWS = 2 * RADIUS + 1 };

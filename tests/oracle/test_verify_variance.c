@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "assay/verify.h"
-#include "oracle/verify_variance.h"
+#include "oracle/image/verify_variance.h"
 #include "support/failing_context.h"
 #include "support/noise_pool.h"
 #include "support/normal_images.h"

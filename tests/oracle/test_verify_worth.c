@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "oracle/bundle_compare.h"
+#include "oracle/bundle/bundle_compare.h"
 #include "support/random_places.h"
 #include "support/splat_bundle.h"
 

@@ -5,7 +5,7 @@
 
 #include "core/random.h"
 #include "io/bundle.h"
-#include "oracle/stage.h"
+#include "oracle/stage/stage.h"
 
 /* ---- bundles ---- */
 

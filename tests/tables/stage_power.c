@@ -13,7 +13,7 @@
 #include "assay/basis.h"
 #include "core/numerics.h"
 #include "core/random.h"
-#include "oracle/irradiance_bound.h"
+#include "oracle/stage/irradiance_bound.h"
 
 enum { M = 8, N = 25, ORDER = 6, COUNT = ORDER * ORDER };
 
