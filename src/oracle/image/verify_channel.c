@@ -11,6 +11,7 @@
 #include "core/context.h"
 #include "oracle/image/run_spread.h"
 #include "oracle/image/student.h"
+#include "oracle/metrics/sample_counts.h"
 
 /* A mean of n rounded values: u per operation, and sums that err by a few sqrt(n) u rather than by
  * n u [higham19]. */
@@ -29,17 +30,6 @@ static const float *find_float(const assay_image *image, const char *prefix, con
                : NULL;
 }
 
-/* Irradiance layers have samples of their own. */
-static const uint32_t *find_count(const assay_image *image, const char *name)
-{
-    assay_channel channel;
-    const char   *count =
-        strncmp(name, "Irradiance", 10) == 0 ? "SampleCount.Irradiance" : "SampleCount";
-    return assay_image_find_channel(image, count, &channel) && channel.type == ASSAY_CHANNEL_UINT
-               ? channel.data.u32
-               : NULL;
-}
-
 static double most_samples(const assay_noisy_channel *channel, size_t pixels)
 {
     uint32_t most = 0; /* a whole number: gcc 12 for aarch64 fails on a largest double */
@@ -55,7 +45,7 @@ static assay_noisy_channel find_noisy(const assay_image *image, const char *name
     const size_t pixels = (size_t)assay_image_width(image) * (size_t)assay_image_height(image);
     assay_noisy_channel channel = {.mean     = find_float(image, "", name),
                                    .variance = find_float(image, "Variance.", name),
-                                   .count    = samples ? NULL : find_count(image, name),
+                                   .count    = samples ? NULL : assay_sample_counts(image, name),
                                    .samples  = samples};
     channel.rounding            = rounding_of(unit, most_samples(&channel, pixels));
     return channel;

@@ -8,6 +8,7 @@
 #include "core/alloc.h"
 #include "core/context.h"
 #include "core/numerics.h"
+#include "oracle/metrics/sample_counts.h"
 
 static const double LOG10_OF_E = 0.43429448190325183, LOG2_OF_E = 1.4426950408889634;
 
@@ -46,18 +47,14 @@ static void take_planes(const assay_image *image, planes *out)
 /* One sample has no variance, whatever its channel says. */
 static bool has_one_sample(const assay_image *image)
 {
-    const size_t  pixels = (size_t)assay_image_width(image) * (size_t)assay_image_height(image);
-    assay_channel samples;
-    if (!assay_image_find_channel(image, "SampleCount", &samples) ||
-        samples.type != ASSAY_CHANNEL_UINT) {
-        return false;
-    }
-    for (size_t i = 0; i < pixels; i++) {
-        if (samples.data.u32[i] > 1) {
+    const size_t    pixels  = (size_t)assay_image_width(image) * (size_t)assay_image_height(image);
+    const uint32_t *samples = assay_sample_counts(image, "R");
+    for (size_t i = 0; samples && i < pixels; i++) {
+        if (samples[i] > 1) {
             return false;
         }
     }
-    return true;
+    return samples != NULL;
 }
 
 static bool has_noise(const assay_image *image, const planes *p)

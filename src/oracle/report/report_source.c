@@ -14,6 +14,7 @@
 #include "core/context.h"
 #include "io/image_decode.h"
 #include "io/read_file.h"
+#include "oracle/metrics/sample_counts.h"
 #include "scene/scene_text.h"
 
 enum { STATS_LIMIT = 1 << 20 };
@@ -218,16 +219,12 @@ const char *assay_report_source_method(const assay_report_source *source)
 
 double assay_report_source_samples(const assay_report_source *source)
 {
-    assay_channel channel;
-    if (!assay_image_find_channel(source->image, "SampleCount", &channel) ||
-        channel.type != ASSAY_CHANNEL_UINT) {
-        return 0.0;
-    }
-    const size_t pixels =
+    const uint32_t *samples = assay_sample_counts(source->image, "R");
+    const size_t    pixels =
         (size_t)assay_image_width(source->image) * (size_t)assay_image_height(source->image);
     double sum = 0.0;
-    for (size_t i = 0; i < pixels; i++) {
-        sum += channel.data.u32[i];
+    for (size_t i = 0; samples && i < pixels; i++) {
+        sum += samples[i];
     }
     return sum / (double)pixels;
 }
