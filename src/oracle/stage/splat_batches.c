@@ -11,6 +11,18 @@ bool splat_batches_are_stale(const stage_run *run, int ends, size_t records)
            t->values[t->rows - 1] < (double)records;
 }
 
+assay_status splat_batches_last_end(const stage_run *run, int ends, size_t records,
+                                    uint32_t *end_out)
+{
+    const stage_table *t   = &run->in[ends];
+    const double       end = t->values && t->rows > 0 ? t->values[t->rows - 1] : (double)records;
+    if (!(end >= 0.0 && end <= (double)records)) {
+        return stage_fail_value(run, ends, t->rows - 1, 0, "not a number of records");
+    }
+    *end_out = (uint32_t)end;
+    return ASSAY_OK;
+}
+
 static assay_status read(stage_run *run, int input, size_t records, splat_batch *batches,
                          size_t *count)
 {

@@ -30,6 +30,10 @@ typedef struct {
  * has made some, which are beyond the last end, and shrunk those before. */
 bool splat_batches_are_stale(const stage_run *run, int ends, size_t records);
 
+/* Records of the last batch, by the input `ends`; without it all.  Errors: DOMAIN. */
+assay_status splat_batches_last_end(const stage_run *run, int ends, size_t records,
+                                    uint32_t *end_out);
+
 /* From the input `ends` (a row a batch; without it one batch has all); none where they are stale.
  * Release what is made.  Errors: DOMAIN, MEMORY. */
 assay_status splat_batches_read(stage_run *run, int ends, size_t records, splat_batch **batches_out,

@@ -236,21 +236,16 @@ static assay_status open_lobes(light_job *job)
 
 static assay_status check(light_job *job)
 {
-    stage_run         *run    = job->run;
-    const stage_table *ends   = &run->in[SPLAT_ENDS];
-    const size_t       pixels = run->in[SPLAT_POSITION].rows;
-    const double       count  = (double)job->radiance.records.count;
-    const double       end = ends->values && ends->rows > 0 ? ends->values[ends->rows - 1] : count;
+    stage_run   *run    = job->run;
+    const size_t pixels = run->in[SPLAT_POSITION].rows;
     for (int i = SPLAT_BRDF; i <= SPLAT_WEIGHT; i++) {
         if (i != SPLAT_GRIDS && run->in[i].rows != pixels) {
             return stage_fail_rows(run, i, pixels, "one a pixel, as of splat_glossy/position");
         }
     }
-    if (!(end >= 0.0 && end <= count)) {
-        return stage_fail_value(run, SPLAT_ENDS, ends->rows - 1, 0, "not a number of records");
-    }
-    job->end = (uint32_t)end;
-    return open_lobes(job);
+    const assay_status status =
+        splat_batches_last_end(run, SPLAT_ENDS, job->radiance.records.count, &job->end);
+    return status == ASSAY_OK ? open_lobes(job) : status;
 }
 
 static assay_status take_pixels(light_job *job)

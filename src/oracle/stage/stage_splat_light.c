@@ -128,24 +128,17 @@ static assay_status light_pixels(void *user, uint64_t chunk, int worker)
 
 static assay_status check(light_job *job)
 {
-    stage_run         *run    = job->run;
-    const stage_table *ends   = &run->in[SPLAT_ENDS];
-    const size_t       pixels = run->in[SPLAT_POSITION].rows;
+    stage_run   *run    = job->run;
+    const size_t pixels = run->in[SPLAT_POSITION].rows;
     for (int i = SPLAT_FRAME; i <= SPLAT_WEIGHT; i++) {
         if (run->in[i].rows != pixels) {
             return stage_fail_rows(run, i, pixels, "one a pixel, as of splat/position");
         }
     }
-    const double end =
-        ends->values && ends->rows > 0 ? ends->values[ends->rows - 1] : (double)job->records->count;
-    if (!(end >= 0.0 && end <= (double)job->records->count)) {
-        return stage_fail_value(run, SPLAT_ENDS, ends->rows - 1, 0, "not a number of records");
-    }
-    job->end = (uint32_t)end;
     if (assay_params_real(run->params, "splat_a") > 0.0) {
         job->records->rules.a = assay_params_real(run->params, "splat_a");
     }
-    return ASSAY_OK;
+    return splat_batches_last_end(run, SPLAT_ENDS, job->records->count, &job->end);
 }
 
 static assay_status open_job(light_job *job)
