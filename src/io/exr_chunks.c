@@ -30,11 +30,19 @@ typedef struct {
     exr_decode_pipeline_t decode;
     bool                  begun;
     exr_result_t (*decompress)(exr_decode_pipeline_t *); /* the library's choice */
-    struct libdeflate_decompressor *inflater;            /* made when it is needed */
+    /* Of ZIP, made when it is needed. */
+    struct libdeflate_decompressor *inflater;
+    uint8_t                        *samples, *sorted;
+    size_t                          room; /* bytes of either */
     int32_t x, y; /* of the chunk's first pixel, in the data window's coordinates */
 } chunk_reader;
 
 /* ---- out of a chunk ---- */
+
+static bool is_zipped(const exr_job *job)
+{
+    return job->compression == EXR_COMPRESSION_ZIP || job->compression == EXR_COMPRESSION_ZIPS;
+}
 
 static uint32_t little_endian32(const uint8_t *b)
 {
@@ -73,7 +81,7 @@ static exr_result_t unpack_chunk(exr_decode_pipeline_t *decode)
 {
     const chunk_reader *reader = decode->decoding_user_data;
     const exr_job      *job    = reader->job;
-    const uint8_t      *packed = decode->unpacked_buffer;
+    const uint8_t      *packed = is_zipped(job) ? reader->samples : decode->unpacked_buffer;
     const int32_t       width  = decode->chunk.width;
     if (!packed || decode->chunk.packed_size == 0) {
         return EXR_ERR_CORRUPT_CHUNK;
@@ -89,38 +97,38 @@ static exr_result_t unpack_chunk(exr_decode_pipeline_t *decode)
 
 /* ---- a chunk ---- */
 
-/* Makes room as the library would, with the same functions: it releases it. */
-static bool make_room(void **buffer, size_t *allocated, size_t size)
+/* The library's own buffers may be one and the same where a chunk is stored as it is: so the
+ * samples have a place of their own. */
+static bool make_room(chunk_reader *reader, size_t size)
 {
-    if (*allocated < size) {
-        free(*buffer);
-        *buffer    = calloc(1, size);
-        *allocated = *buffer ? size : 0;
+    if (reader->room < size) {
+        free(reader->samples);
+        free(reader->sorted);
+        reader->samples = calloc(1, size);
+        reader->sorted  = calloc(1, size);
+        reader->room    = reader->samples && reader->sorted ? size : 0;
     }
-    return *allocated >= size;
+    if (!reader->inflater) {
+        reader->inflater = libdeflate_alloc_decompressor();
+    }
+    return reader->inflater && reader->room >= size;
 }
 
 static exr_result_t unzip(exr_decode_pipeline_t *decode)
 {
     chunk_reader *reader = decode->decoding_user_data;
-    const size_t  size   = decode->chunk.unpacked_size;
-    if (!reader->inflater) {
-        reader->inflater = libdeflate_alloc_decompressor();
-    }
-    if (!reader->inflater ||
-        !make_room(&decode->unpacked_buffer, &decode->unpacked_alloc_size, size) ||
-        !make_room(&decode->scratch_buffer_1, &decode->scratch_alloc_size_1, size)) {
+    const size_t  size = decode->chunk.unpacked_size, packed = decode->chunk.packed_size;
+    if (!make_room(reader, size)) {
         return EXR_ERR_OUT_OF_MEMORY;
     }
     /* What compression would not have made smaller is stored as it is.  3.1 also stores streams
      * that are just as long, which only their check sums tell from samples. */
-    const size_t packed = decode->chunk.packed_size;
-    if (!assay_exr_unzip(reader->inflater, decode->packed_buffer, packed, decode->scratch_buffer_1,
-                         decode->unpacked_buffer, size)) {
+    if (!assay_exr_unzip(reader->inflater, decode->packed_buffer, packed, reader->sorted,
+                         reader->samples, size)) {
         if (packed != size) {
             return EXR_ERR_CORRUPT_CHUNK;
         }
-        memcpy(decode->unpacked_buffer, decode->packed_buffer, size);
+        memcpy(reader->samples, decode->packed_buffer, size);
     }
     return EXR_ERR_SUCCESS;
 }
@@ -136,11 +144,6 @@ static exr_result_t decompress(exr_decode_pipeline_t *decode)
     return result == EXR_ERR_OUT_OF_MEMORY && b44 && decode->scratch_buffer_1
                ? EXR_ERR_CORRUPT_CHUNK
                : result;
-}
-
-static bool is_zipped(const exr_job *job)
-{
-    return job->compression == EXR_COMPRESSION_ZIP || job->compression == EXR_COMPRESSION_ZIPS;
 }
 
 static exr_result_t prepare(chunk_reader *reader, const exr_chunk_info_t *chunk)
@@ -251,6 +254,8 @@ static void close_reader(chunk_reader *reader)
         exr_decoding_destroy(reader->job->exr, &reader->decode);
     }
     libdeflate_free_decompressor(reader->inflater);
+    free(reader->samples);
+    free(reader->sorted);
 }
 
 static assay_status read_one_by_one(exr_job *job, const chunk_grid *grid)
