@@ -29,8 +29,9 @@ typedef struct {
     double relative_rmse; /* sqrt(mean ((b - a)^2 / (a^2 + 1e-2 mean_a^2)))                    */
     double mean_error;    /* mean (b - a): bias                                                */
     double z_rms;         /* rms of (b - a) / sqrt(var_a + var_b) where both images carry the
-                             channel's variance and it is > 0, of two samples or more: 1 for
-                             two unbiased renders; NaN where they do not carry it              */
+                             channel's variance and it is > 0: 1 for two unbiased renders (not
+                             where one has one sample a pixel, whose variance files say is 0);
+                             NaN where they do not carry it                                    */
 } assay_channel_difference;
 
 typedef struct assay_comparison assay_comparison;

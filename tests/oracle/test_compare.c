@@ -171,31 +171,6 @@ static void z_is_one_for_unbiased_renders(void **state)
     assay_image_destroy(b);
 }
 
-/* The first pixel of b has one sample, whose variance files say is 0; the other has z = 2. */
-static void one_sample_has_no_z(void **state)
-{
-    assay_image *a = make(*state, 2, 1), *b = make(*state, 2, 1);
-    float       *x = add(a, "R"), *y = add(b, "R");
-    float       *vx = add(a, "Variance.R"), *vy = add(b, "Variance.R");
-    bool         identical;
-    for (int i = 0; i < 2; i++) {
-        x[i]  = 1.0f;
-        y[i]  = i ? 1.5f : 9.0f;
-        vx[i] = i ? 0.03125f : 0.0625f;
-        vy[i] = i ? 0.03125f : 0.0f;
-    }
-    assay_channel count;
-    assert_int_equal(assay_image_add_channel(b, "SampleCount", ASSAY_CHANNEL_UINT, &count),
-                     ASSAY_OK);
-    count.data.u32[0] = 1;
-    count.data.u32[1] = 2;
-    assert_near(only_difference(a, b, &identical).z_rms, 2.0, 1e-12);
-    count.data.u32[1] = 1;
-    assert_true(isnan(only_difference(a, b, &identical).z_rms));
-    assay_image_destroy(a);
-    assay_image_destroy(b);
-}
-
 /* Values over 16 magnitudes against sums in long double. */
 static void sums_are_accurate(void **state)
 {
@@ -400,7 +375,6 @@ int main(void)
                                         counted_tear_down),
         cmocka_unit_test_setup_teardown(no_finite_pixel_gives_no_numbers, counted_set_up,
                                         counted_tear_down),
-        cmocka_unit_test_setup_teardown(one_sample_has_no_z, counted_set_up, counted_tear_down),
         cmocka_unit_test_setup_teardown(z_is_one_for_unbiased_renders, counted_set_up,
                                         counted_tear_down),
         cmocka_unit_test_setup_teardown(sums_are_accurate, counted_set_up, counted_tear_down),

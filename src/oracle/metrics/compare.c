@@ -15,7 +15,6 @@
 #include "math/running_sum.h"
 #include "oracle/metrics/channel_mean.h"
 #include "oracle/metrics/picture.h"
-#include "oracle/metrics/sample_counts.h"
 
 struct assay_comparison {
     assay_context            *context;
@@ -47,36 +46,26 @@ static bool differ(const assay_channel *a, const assay_channel *b, size_t pixel)
     return a->type == b->type ? a->data.u32[pixel] != b->data.u32[pixel] : x != y;
 }
 
-typedef struct {
-    assay_channel   variance;
-    const uint32_t *samples; /* NULL: not known */
-} channel_noise;
-
-static bool find_noise(const assay_image *image, const char *name, channel_noise *noise)
+/* Both channels of variance, where both images have them. */
+static bool find_variances(const assay_image *a, const assay_image *b, const char *name,
+                           assay_channel variances[2])
 {
     char variance[300];
     snprintf(variance, sizeof variance, "Variance.%s", name);
-    noise->samples = assay_sample_counts(image, name);
-    return assay_image_find_channel(image, variance, &noise->variance);
-}
-
-/* One sample has a variance, which is not the 0 that files have for it. */
-static double variance_at(const channel_noise *noise, size_t pixel)
-{
-    return noise->samples && noise->samples[pixel] == 1
-               ? NAN
-               : assay_channel_value(&noise->variance, pixel);
+    return assay_image_find_channel(a, variance, &variances[0]) &&
+           assay_image_find_channel(b, variance, &variances[1]);
 }
 
 /* rms of the difference in units of its expected standard deviation. */
-static double z_rms(const assay_channel *a, const assay_channel *b, const channel_noise noise[2],
+static double z_rms(const assay_channel *a, const assay_channel *b, const assay_channel *variances,
                     size_t pixels)
 {
     running_sum squares = {0};
     uint64_t    count   = 0;
     for (size_t i = 0; i < pixels; i++) {
-        const double d        = assay_channel_value(b, i) - assay_channel_value(a, i);
-        const double variance = variance_at(&noise[0], i) + variance_at(&noise[1], i);
+        const double d = assay_channel_value(b, i) - assay_channel_value(a, i);
+        const double variance =
+            assay_channel_value(&variances[0], i) + assay_channel_value(&variances[1], i);
         if (isfinite(d) && isfinite(variance) && variance > 0.0) {
             running_sum_add(&squares, d * d / variance);
             count++;
@@ -130,8 +119,7 @@ static assay_status compare_one(void *user, uint64_t index, int worker)
     const compare_job        *job    = user;
     assay_channel_difference *out    = &job->channels[index];
     const size_t              pixels = assay_image_pixels(job->a);
-    assay_channel             a, b;
-    channel_noise             noise[2];
+    assay_channel             a, b, variances[2];
     (void)worker;
     if (!assay_image_find_channel(job->a, out->channel, &a) ||
         !assay_image_find_channel(job->b, out->channel, &b)) {
@@ -139,10 +127,9 @@ static assay_status compare_one(void *user, uint64_t index, int worker)
     }
     out->mean_a = assay_channel_mean(&a, &b, pixels);
     out->mean_b = assay_channel_mean(&b, &a, pixels);
-    out->z_rms =
-        find_noise(job->a, out->channel, &noise[0]) && find_noise(job->b, out->channel, &noise[1])
-            ? z_rms(&a, &b, noise, pixels)
-            : NAN;
+    out->z_rms  = find_variances(job->a, job->b, out->channel, variances)
+                      ? z_rms(&a, &b, variances, pixels)
+                      : NAN;
     compare_pixels(&a, &b, pixels, assay_image_width(job->a), out);
     return ASSAY_OK;
 }
