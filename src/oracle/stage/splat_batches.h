@@ -21,6 +21,12 @@ typedef struct {
      "[gautron06] algorithm 4"},                                                                   \
     {"neighbour_clamp", ASSAY_PARAM_BOOL, "", "off", 0, 0, NULL,                                   \
      STAGE_SHRINK_SUMMARY, "[krivanek06]"}
+/* Beside splat_a, of the last batch alone. */
+#define STAGE_LAST_BATCH_PARAMS                                                                    \
+    {"variant", ASSAY_PARAM_CHOICE, "", "corrected", 0, 0, "corrected|published",                  \
+     "published: records that count twice are not replayed.", "[gautron06] algorithm 4"},          \
+    {"neighbour_clamp", ASSAY_PARAM_BOOL, "", "off", 0, 0, NULL,                                   \
+     STAGE_SHRINK_SUMMARY, "[krivanek06]"}
 #define STAGE_SHRINK_SUMMARY                                                                       \
     "Records shrink while others are made: the last batch alone can be replayed, and it only if "  \
     "no later sweep made records."

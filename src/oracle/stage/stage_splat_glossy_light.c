@@ -30,10 +30,7 @@ static const assay_param_desc PARAMS[] = {
     STAGE_RULE_PARAMS, STAGE_RADIANCE_PARAMS,
     {"grid", ASSAY_PARAM_INT, "texels", "32", 2, 512, NULL, "Side of a lobe's grid.",
      "[gautron06] eq. 3.35, 3.36"},
-    {"variant", ASSAY_PARAM_CHOICE, "", "corrected", 0, 0, "corrected|published",
-     "published: records that count twice are not replayed.", "[gautron06] algorithm 4"},
-    {"neighbour_clamp", ASSAY_PARAM_BOOL, "", "off", 0, 0, NULL, STAGE_SHRINK_SUMMARY,
-     "[krivanek06]"},
+    STAGE_LAST_BATCH_PARAMS,
     {0}};
 
 static const assay_stage_array INPUTS[] = {

@@ -29,10 +29,7 @@ static const assay_param_desc PARAMS[] = {
     STAGE_RULE_PARAMS, STAGE_SAID_PARAMS,
     {"splat_a", ASSAY_PARAM_REAL, "", "0", 0, 1e3, NULL,
      "Accuracy of the last batch; 0: a.", "[gautron06] fig. 4.12"},
-    {"variant", ASSAY_PARAM_CHOICE, "", "corrected", 0, 0, "corrected|published",
-     "published: records that count twice are not replayed.", "[gautron06] algorithm 4"},
-    {"neighbour_clamp", ASSAY_PARAM_BOOL, "", "off", 0, 0, NULL, STAGE_SHRINK_SUMMARY,
-     "[krivanek06]"},
+    STAGE_LAST_BATCH_PARAMS,
     {0}};
 
 static const assay_stage_array INPUTS[] = {
